@@ -63,8 +63,8 @@ def about_lines(lines: Floats, elsewhere: float, across: float, along: float) ->
 
     Where lines count in part it lies in between.
     """
-    certain = np.trace(lines, axis1=-2, axis2=-1)[..., None, None] * np.eye(3)
-    return np.asarray(elsewhere * (np.eye(3) - certain) + across * (certain - lines) + along * lines)
+    count = np.trace(lines, axis1=-2, axis2=-1)[..., None, None] * np.eye(3)
+    return np.asarray(elsewhere * (np.eye(3) - count) + across * (count - lines) + along * lines)
 
 
 def towards_centre_lines(
@@ -94,7 +94,7 @@ def towards_centre_lines(
         line = centre_line(V[own], area[own] * W[own, part] ** 2, chosen)
         if line is not None:
             lines[part] = line
-    place, held = expected.copy(), np.zeros((len(expected), 3, 3))
+    place, axes = expected.copy(), np.zeros((len(expected), 3, 3))
     for joint in range(1, len(parents)):
         at, size = expected[joint - 1], max(float(radius[joint - 1]), np.finfo(float).tiny)
         beside = [lines[part] for part in (int(parents[joint]), joint) if part in lines]
@@ -102,8 +102,8 @@ def towards_centre_lines(
         weight = [_weight(line, float(np.linalg.norm(o)) / size, size, chosen) for line, o in zip(beside, offsets, strict=True)]
         for line, offset, share in zip(beside, offsets, np.array(weight) / max(sum(weight), 1.0), strict=True):
             place[joint - 1] += share * offset
-            held[joint - 1] += share * np.outer(line.axis, line.axis)
-    return ExpectedJoints(place, held)
+            axes[joint - 1] += share * np.outer(line.axis, line.axis)
+    return ExpectedJoints(place, axes)
 
 
 def centre_line(V: Floats, mass: Floats, settings: CentreLinesSettings | None = None) -> CentreLine | None:

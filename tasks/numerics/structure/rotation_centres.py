@@ -22,8 +22,8 @@ class RotationCentresSettings(NamedTuple):
 
     spread: float = 0.5
     """Standard deviation of a joint about the middle of its border. Not recorded."""
-    across: float = 0.12
-    """The same across the centre line of a long part, where lines are given; see `KinematicTreeSettings`."""
+    across: float = 0.5
+    """The same across the centre line of a long part, where lines are given; as elsewhere unless it is told."""
     along: float = 0.5
     """The same along that line."""
     frames_alike: float = np.inf

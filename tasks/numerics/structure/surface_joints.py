@@ -14,7 +14,7 @@ v) with
 
     s = (A + λ C)⁻¹ Σ_f w_f M_fᵀ Q_f d_f,   A = Σ_f w_f M_fᵀ Q_f M_f,   d_f = −e_f at c₀
 
-λ the largest eigenvalue of A, C = κ I where no line is, 2 I across the centre line of a long part and 0.1 I along it
+λ the largest eigenvalue of A, C = κ I where no line is, larger across the centre line of a long part and smaller along it
 (`hold_across`, `hold_along`), v the mean, over two ways of halving the frames, of the square of half the distance between what
 halves give. So it goes where the frames hold it firmly, without a line 1 / (1 + κ) of the way at most, and less far where
 halves disagree. With a wide ρ the surfaces place c almost alone; how far halves of the frames then put it from the joint says
@@ -71,8 +71,8 @@ class SurfaceJointsSettings(NamedTuple):
     hold_along: float = 0.1
     """The same along it. From 0.02 to 0.1 those win alike, recorded ones the more the larger; at 0.3 they win half of that."""
     doubt: float = 6.0
-    """δ: weight of the disagreement of halves against the way. Of the bodies that `hold_across` names people and recorded
-    ones win 1 % at 6 against 12, quadrupeds and random trees lose as much or less; at 3 all of this is more."""
+    """δ: weight of the disagreement of halves against the way. Of the bodies that `hold_across` names people win 1 % at 6
+    against 12 and recorded ones half of that, quadrupeds and random trees lose less than 1 %; at 3 all of this is more."""
     farthest: float = 0.5
     """Length of such a way at most, in radii of the border. The longest of 616 on such bodies has 0.42."""
     outlier: float = 3.0

@@ -204,8 +204,9 @@ def _joints(
     prior = RotationCentresSettings(
         spread=chosen.spread, across=chosen.across, along=chosen.along, frames_alike=chosen.frames_alike, far=chosen.far
     )
-    lines, seen = (None if parts.confidence is None else expected.lines), parts.confidence
-    joints = rotation_centres(parts.R, parts.t, pair, expected.place, met.radius[rows], residual, seen, prior, lines)
+    lines = None if parts.confidence is None else expected.lines
+    place, radius = expected.place, met.radius[rows]
+    joints = rotation_centres(parts.R, parts.t, pair, place, radius, residual, parts.confidence, prior, lines)
     rest[1:], off[1:] = joints.rest, joints.drift
     if chosen.root_amid_limbs:
         rest[0] = root_amid_limbs(rest, tree.parents, rest[0])

@@ -114,7 +114,7 @@ def test_a_joint_on_a_centre_line_is_held_more_firmly_across_it_than_along_it() 
     expected = body.joints[1:] - way
 
     def share(lines: Floats | None) -> Floats:
-        prior = RotationCentresSettings(spread=0.35)
+        prior = RotationCentresSettings(spread=0.35, across=0.12)
         found = rotation_centres(body.R, body.t, pair, expected, np.ones(1), residual, None, prior, lines)
         return np.asarray((found.rest - expected)[0] / way)
 
@@ -130,6 +130,6 @@ def test_a_line_that_is_wrong_does_not_hold_a_joint_whose_motion_is_certain() ->
     """What a wrong place leaves would count as noise, and hold the joint there the more."""
     body, pair, z = chain((0.5,), swings(48, 2, degrees=20.0, axes=2)), np.array([[0, 1]]), np.diag([0.0, 0.0, 1.0])[None]
     residual, off = np.full(body.R.shape[:2], 0.01), np.array([[0.35, 0.35, 0.0]])
-    prior = RotationCentresSettings(spread=0.35, frames_alike=3.0, far=0.7)
+    prior = RotationCentresSettings(spread=0.35, across=0.12, frames_alike=3.0, far=0.7)
     found = rotation_centres(body.R, body.t, pair, body.joints[1:] + off, np.ones(1), residual, None, prior, z)
     assert np.linalg.norm(found.rest[0] - body.joints[1]) < 0.4 * np.linalg.norm(off)
