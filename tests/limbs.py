@@ -2,6 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
+from skimage.measure import marching_cubes
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -9,6 +10,9 @@ LENGTH = 10.0  # half of it on either side of the joint at the origin
 RADIUS = 1.0
 ANGLES = (0.0, 0.2, 0.4, 0.6, 0.8)
 """How far the tube is bent in the frames of a sequence, radians."""
+REACHING = np.array([[5.0, 4.0, 3.0], [-5.0, 4.0, 3.0], [2.0, 0.0, -9.0], [-2.0, 0.0, -9.0]])
+"""(limb, xyz) ends of two arms that reach forwards and of two legs; the trunk is the z axis from −4 to 4."""
+ROOTS = np.array([[0.0, 0.0, 3.0], [0.0, 0.0, 3.0], [0.0, 0.0, -4.0], [0.0, 0.0, -4.0]])
 
 
 def tube(around: int = 24, along: int = 48, start: float = 0.0, flat: float = 0.7) -> tuple[Floats, Ints]:
@@ -48,3 +52,27 @@ def rotation(axis: tuple[float, float, float], angle: float) -> Floats:
     k = np.asarray(axis) / np.linalg.norm(axis)
     K = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
     return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+
+def reaching_body() -> tuple[Floats, Ints, Floats]:
+    """V, F of a trunk, two arms and two legs, and stems (limb, station, xyz)."""
+    x = np.stack(
+        np.meshgrid(np.arange(-7, 7.1, 0.4), np.arange(-3, 6.1, 0.4), np.arange(-11, 6.1, 0.4), indexing="ij"), axis=-1
+    )
+    ends = [
+        (np.array([0.0, 0.0, -4.0]), np.array([0.0, 0.0, 4.0]), 1.3),
+        *((a, b, 0.8) for a, b in zip(ROOTS, REACHING, strict=True)),
+    ]
+    along = [np.clip((x - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1) for a, b, _ in ends]
+    inside = [r - np.linalg.norm(x - a - s[..., None] * (b - a), axis=-1) for (a, b, r), s in zip(ends, along, strict=True)]
+    surface, faces, _, _ = marching_cubes(np.max(inside, axis=0), 0.0, gradient_direction="ascent")
+    share = np.linspace(0.2, 1.0, 5)[None, :, None]
+    stems = ROOTS[:, None] + share * (REACHING - ROOTS)[:, None]
+    return surface * 0.4 + x[0, 0, 0], np.ascontiguousarray(faces, dtype=np.int64), stems
+
+
+def twisted(x: Floats, angle: float) -> Floats:
+    """Points (…, xyz) turned about the trunk, the chest in full and the legs not at all."""
+    turn = angle * np.clip((x[..., 2] + 3.0) / 5.0, 0.0, 1.0)
+    cos, sin = np.cos(turn), np.sin(turn)
+    return np.stack([cos * x[..., 0] - sin * x[..., 1], sin * x[..., 0] + cos * x[..., 1], x[..., 2]], axis=-1)

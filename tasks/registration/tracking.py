@@ -23,6 +23,7 @@ from kinetree.tasks.numerics.registration.near_pose import (
     is_lost,
     near_pose,
     nearest_pose,
+    put_right,
     thinned_body,
     thinned_frame,
 )
@@ -68,6 +69,9 @@ def tracking(
         frame = target(mesh, deformation_graph, vertex_colour, reference_colour)
         fitted = _fitted(body, previous, starts, frame, fit_settings(params), index[0], limbs)
         near, attempt = NearPose(fitted.pose, distant_points(cloud, fitted.pose, points)), 1 + fitted.attempt
+    right = put_right(cloud, near, limbs, points)
+    if right is not near:
+        near, attempt = right, 0
     # the reference is far from nothing, whatever the capture's holes
     usual = near.distant if previous.steps == 0 else min(previous.usual, near.distant)
     before, frames = near.pose if is_entry else last, (index[0], previous.frame)

@@ -1,5 +1,6 @@
 """Contract of tracking: at rest in the reference, near the body in every other frame, and a chain that goes on."""
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.registration.deformation import Pose, shape
 from kinetree.tasks.numerics.registration.first_fit import last_steps
 from kinetree.tasks.numerics.registration.frame_confidence import residuals
-from kinetree.tasks.numerics.registration.limb_swing import swings
+from kinetree.tasks.numerics.registration.limb_swing import LimbSwingSettings, swings, with_two_exchanged
 from kinetree.tasks.numerics.registration.tracking import entered
 from kinetree.tasks.registration.first_fit import first_fit
 from kinetree.tasks.registration.pose import fit_settings, graph, pose
@@ -103,6 +104,36 @@ def test_a_limb_far_from_where_it_was_is_brought_to_where_the_frame_shows_it_and
     assert unknown.attempt > 0
     assert known.attempt == 0
     assert known.unexplained < 0.003
+
+
+@pytest.mark.parametrize("fitted", ["by few points", "with all samples"])
+def test_legs_that_the_pose_before_had_exchanged_are_put_right_and_the_frame_is_fitted_with_all_samples_later(
+    monkeypatch: pytest.MonkeyPatch, fitted: str
+) -> None:
+    made = walk()
+    rest, at = made.tracking[made.reference.frame], made.reference.frame + 1
+    stems, body = np.array(made.reference.stems), graph(made.deformation_graph)
+    every = LimbSwingSettings(stages=((40, np.inf),), ways=1)
+    exchanged = with_two_exchanged(body, pose(rest), stems, np.array(made.extrema[at].stems), every)[0]
+    last = rest.model_copy(update={"rotation": exchanged.rotation, "translation": exchanged.translation})
+    if fitted == "with all samples":
+        task = sys.modules["kinetree.tasks.registration.tracking"]
+        monkeypatch.setattr(task, "is_lost", lambda *given: True)
+        for one in (task, numeric_tracking):
+            monkeypatch.setattr(one, "swings", lambda *given: [])
+
+    def from_there(limbs: Floats) -> Tracking:
+        graph_of = made.deformation_graph.model_copy(update={"stems": limbs})
+        return tracking(made.mesh[at], graph_of, made.take_entries, last, TrackingParams(), (at,), made.extrema[at])
+
+    def off(here: Tracking) -> float:
+        apart = shape(body, pose(here))[0] - shape(body, pose(made.tracking[at]))[0]
+        return float(np.linalg.norm(apart, axis=1).max()) / body.size
+
+    unknown, known = (from_there(limbs) for limbs in (stems[:1], stems))
+    assert off(unknown) > 0.1
+    assert off(known) < 0.05
+    assert known.attempt == 0
 
 
 @pytest.mark.parametrize("where", ["in colour", "where a take is entered"])

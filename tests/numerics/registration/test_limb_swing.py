@@ -2,13 +2,18 @@
 
 import numpy as np
 import pytest
-from limbs import LENGTH, bent, rotation, tube
+from limbs import LENGTH, bent, reaching_body, rotation, tube, twisted
 from shipped import GRAPH
-from skimage.measure import marching_cubes
 
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraphSettings, deformation_graph
-from kinetree.tasks.numerics.registration.limb_swing import LimbSwingSettings, carried, stem_points, swings
+from kinetree.tasks.numerics.registration.limb_swing import (
+    LimbSwingSettings,
+    carried,
+    stem_points,
+    swings,
+    with_two_exchanged,
+)
 from kinetree.tasks.numerics.registration.near_pose import near_pose, thinned_body, thinned_frame
 
 V, F = tube(around=29, along=57, start=0.07)
@@ -23,35 +28,6 @@ NONE = np.zeros((0, 5, 3))
 def bent_stems(angle, order=(1, 0)):
     """Stems and centre of the bent tube as a frame shows them, in an order of its own."""
     return np.stack([bent(stem, angle) for stem in STEMS])[list(order)], bent(V, angle).mean(axis=0)
-
-
-REACHING = np.array([[5.0, 4.0, 3.0], [-5.0, 4.0, 3.0], [2.0, 0.0, -9.0], [-2.0, 0.0, -9.0]])
-"""(limb, xyz) ends of two arms that reach forwards and of two legs; the trunk is the z axis from −4 to 4."""
-ROOTS = np.array([[0.0, 0.0, 3.0], [0.0, 0.0, 3.0], [0.0, 0.0, -4.0], [0.0, 0.0, -4.0]])
-
-
-def reaching_body():
-    """V, F of a trunk, two arms and two legs, and stems (limb, station, xyz)."""
-    x = np.stack(
-        np.meshgrid(np.arange(-7, 7.1, 0.4), np.arange(-3, 6.1, 0.4), np.arange(-11, 6.1, 0.4), indexing="ij"), axis=-1
-    )
-    ends = [
-        (np.array([0.0, 0.0, -4.0]), np.array([0.0, 0.0, 4.0]), 1.3),
-        *((a, b, 0.8) for a, b in zip(ROOTS, REACHING, strict=True)),
-    ]
-    along = [np.clip((x - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1) for a, b, _ in ends]
-    inside = [r - np.linalg.norm(x - a - s[..., None] * (b - a), axis=-1) for (a, b, r), s in zip(ends, along, strict=True)]
-    surface, faces, _, _ = marching_cubes(np.max(inside, axis=0), 0.0, gradient_direction="ascent")
-    share = np.linspace(0.2, 1.0, 5)[None, :, None]
-    stems = ROOTS[:, None] + share * (REACHING - ROOTS)[:, None]
-    return surface * 0.4 + x[0, 0, 0], np.ascontiguousarray(faces, dtype=np.int64), stems
-
-
-def twisted(x, angle):
-    """Points (…, xyz) turned about the trunk, the chest in full and the legs not at all."""
-    turn = angle * np.clip((x[..., 2] + 3.0) / 5.0, 0.0, 1.0)
-    cos, sin = np.cos(turn), np.sin(turn)
-    return np.stack([cos * x[..., 0] - sin * x[..., 1], sin * x[..., 0] + cos * x[..., 1], x[..., 2]], axis=-1)
 
 
 def test_points_at_rest_lie_where_they_are_and_turn_with_the_body(body):
@@ -156,3 +132,35 @@ def test_a_piece_that_lies_apart_and_has_no_limb_goes_along_with_the_body(turn, 
     centre = shape(graph, at_rest(graph))[0][graph.sample].mean(axis=0)
     found = swings(graph, at_rest(graph), stems, stems + raised, centre + raised)[0]
     np.testing.assert_allclose(shape(graph, found)[0][apart], both[apart] + raised, atol=0.02 * LENGTH)
+
+
+@pytest.fixture(scope="module")
+def reaching():
+    """The body that reaches, with a deformation graph of 150 nodes · its stems."""
+    surface, faces, stems = reaching_body()
+    return deformation_graph(surface, faces, GRAPH._replace(nodes=150)), stems
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 1, 0, 2)])
+@pytest.mark.parametrize("angle", [1.65, 2.0])
+def test_arms_that_were_exchanged_are_where_they_belong_in_the_pose_of_least_energy(reaching, angle, order):
+    body, stems = reaching
+    goal, points = twisted(stems, angle), stem_points(body, stems)
+    centre = shape(body, at_rest(body))[0][body.sample].mean(axis=0)
+    wrong = swings(body, at_rest(body), stems, goal, centre, LimbSwingSettings(exchange=0.0))[0]
+    assert np.linalg.norm(carried(body, wrong, points) - goal.reshape(-1, 3), axis=1)[:10].min() > 1.5
+    found = with_two_exchanged(body, wrong, stems, goal[list(order)])
+    np.testing.assert_allclose(carried(body, found[0], points), goal.reshape(-1, 3), atol=1.0)
+
+
+def test_limbs_that_are_right_have_no_exchange_as_likely_and_ways_are_at_most_as_many_as_asked_for(reaching):
+    body, stems = reaching
+    assert with_two_exchanged(body, at_rest(body), stems, twisted(stems, 0.5)) == []
+    every = LimbSwingSettings(stages=((2, np.inf),), nearest=5, ways=4)
+    assert len(with_two_exchanged(body, at_rest(body), stems, twisted(stems, 0.5), every)) == 4
+
+
+@pytest.mark.parametrize(("limbs", "shown"), [(1, 4), (4, 1), (0, 4), (4, 0)])
+def test_one_limb_has_none_to_be_exchanged_with(reaching, limbs, shown):
+    body, stems = reaching
+    assert with_two_exchanged(body, at_rest(body), stems[:limbs], stems[:shown], LimbSwingSettings(stages=((2, np.inf),))) == []

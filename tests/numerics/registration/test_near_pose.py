@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
-from limbs import ANGLES, LENGTH, bent, tube
+from limbs import ANGLES, LENGTH, bent, reaching_body, tube, twisted
 from scipy.spatial.transform import Rotation
+from shipped import GRAPH
 
 from kinetree.tasks.numerics.registration import near_pose as module
-from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, shape
+from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, bending, shape
+from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings, swings
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
     NearPoseSettings,
@@ -14,6 +17,7 @@ from kinetree.tasks.numerics.registration.near_pose import (
     is_lost,
     near_pose,
     nearest_pose,
+    put_right,
     thinned_body,
     thinned_frame,
 )
@@ -112,3 +116,45 @@ def test_the_pose_from_the_neighbour_counts_if_no_other_lies_nearer(body):
     assert nearest_pose(thin, near, [wrung(thin, 2.0)], frame) is near
     assert nearest_pose(thin, near, [], frame) is near
     assert nearest_pose(thin, FAR, [], frame) is FAR
+
+
+TWIST = 1.65
+"""Of the trunk, radians: each arm comes nearer to the place of the other one."""
+
+
+@pytest.fixture(scope="module")
+def twisted_frame():
+    """The body that reaches, thinned · the limbs of a frame in which its trunk has twisted · that frame · its pose with arms
+    exchanged · where the frame has the body's points.
+    """
+    surface, faces, stems = reaching_body()
+    whole = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+    thin, goal = thinned_body(whole), twisted(stems, TWIST)
+    limbs = FrameLimbs(stems, goal, twisted(surface[whole.sample], TWIST).mean(axis=0))
+    frame = thinned_frame(twisted(surface, TWIST), faces, whole.size)
+    start = swings(whole, at_rest(whole), *limbs, LimbSwingSettings(exchange=0.0))[0]
+    return thin, limbs, frame, near_pose(thin, start, frame), twisted(thin.V, TWIST)
+
+
+def test_arms_that_were_exchanged_are_put_right(twisted_frame):
+    body, limbs, frame, wrong, goal = twisted_frame
+    assert np.linalg.norm(shape(body, wrong.pose)[0] - goal, axis=1).max() > 5.0
+    right = put_right(body, wrong, limbs, frame, SETTINGS._replace(strained=0.1))
+    assert not is_lost(right, 0.0)
+    assert np.linalg.norm(shape(body, right.pose)[0] - goal, axis=1).max() < 2.0
+    assert put_right(body, right, limbs, frame, SETTINGS._replace(strained=0.0)) is right, "right limbs stay, bent or not"
+
+
+def test_what_bends_little_is_not_looked_at_and_the_limit_is_a_share_of_the_area(twisted_frame):
+    body, limbs, frame, wrong, _ = twisted_frame
+    bent = bending(body, wrong.pose) / body.size**2
+    assert put_right(body, wrong, limbs, frame, SETTINGS._replace(strained=1.01 * bent)) is wrong
+    assert put_right(body, wrong, limbs, frame, SETTINGS._replace(strained=0.99 * bent)) is not wrong
+
+
+def test_an_exchange_that_leaves_more_of_the_frame_far_away_is_not_taken(twisted_frame, monkeypatch):
+    body, limbs, frame, wrong, _ = twisted_frame
+    rest = at_rest(body)
+    unbent = Pose(rest.rotation, rest.translation + [0.0, 0.0, 10.0 * body.size])
+    monkeypatch.setattr(module, "with_two_exchanged", lambda *given: [unbent])
+    assert put_right(body, wrong, limbs, frame, SETTINGS._replace(strained=0.1)) is wrong
