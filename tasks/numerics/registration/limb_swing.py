@@ -48,11 +48,12 @@ class LimbSwingSettings(NamedTuple):
     begun: float = 2.0
     """How many times the energy it may have after one round, to be gone on with: right exchanges had 0.9 to 1.7 times."""
     stages: tuple[tuple[int, float], ...] = ((2, 12.0), (10, 4.0), (40, 2.0))
-    """Where limbs may have been exchanged already: rounds, and how many times the energy an exchange may then have, to be gone
-    on with, by turns. Right ones had 4.5 to 9.7 times after 2 rounds (four frames of two runners, a made-up twist of 95 and one
-    of 115°), 0.4 to 3.2 after 10, 0.1 to 1.4 after 40. Wrong ones in eight frames of two runners had 2.3 and more after 40."""
-    nearest: int = 3
-    """Pairs of limbs that are exchanged there, those with the nearest stems, for time: legs and arms are."""
+    """Where limbs may have been exchanged already: after how many rounds an exchange may have at most how many times the
+    energy of the limbs as they are, to be begun again with more rounds, or taken after the last. Right ones had 4.5 to 9.7
+    times after 2 rounds (four frames of two runners, a made-up twist of 95 and one of 115°), 0.4 to 3.2 after 10, 0.1 to 1.4
+    after 40. Wrong ones in nine frames of three runners had 2.3 and more after 40."""
+    pairs: int = 3
+    """Pairs of limbs that are exchanged there, for time: those most alike in length, since a longer limb is seen to be one."""
     held: float = 1e-3
     """Share of its former rotation in a node's new one, so that a node without edges has one."""
     anchor: float = 1e-6
@@ -111,8 +112,8 @@ def swings(
     chosen = settings or LimbSwingSettings()
     if not len(stems) or not len(seen):
         return []
-    gone = centre - shape(graph, pose)[0][graph.sample].mean(axis=0)
-    swing, given = _given(graph, pose, stems, seen, gone, chosen)
+    shift = centre - shape(graph, pose)[0][graph.sample].mean(axis=0)
+    swing, _, given = _nearest_stems(graph, pose, stems, seen, shift, chosen)
     return _least_energy_exchanges(swing, seen, given)
 
 
@@ -123,9 +124,11 @@ def with_two_exchanged(
     seen: Floats,
     settings: LimbSwingSettings | None = None,
 ) -> list[Pose]:
-    """Poses with the stems of two limbs exchanged that bend no more, or hardly more, than the pose that a frame has (ours).
+    """Poses with the stems of two limbs exchanged whose energy is little more than with the stems as they are (ours).
 
-    From a pose whose limbs were exchanged few rounds say little, so likely exchanges have more and more of them (`stages`).
+    Two limbs exchange theirs where they are nearly as long as each other. From a pose whose limbs were exchanged few rounds say
+    little, so the likelier an exchange is, the more rounds it has (`stages`). A limb that the frame does not show, and a stem
+    that no limb has, is not exchanged.
 
     graph   : of the reference mesh
     pose    : of this frame, as it was fitted
@@ -136,19 +139,19 @@ def with_two_exchanged(
     chosen = settings or LimbSwingSettings()
     if min(len(stems), len(seen)) < 2:
         return []
-    swing, given = _given(graph, pose, stems, seen, np.zeros(3), chosen)
-    far = np.linalg.norm(seen[given][:, None] - seen[given][None], axis=3).mean(axis=2)
-    pairs = sorted(combinations(range(len(given)), 2), key=lambda pair: far[pair])[: chosen.nearest]
-    orders = [given, *(_exchanged(given, *pair) for pair in pairs)]
+    swing, limb, given = _nearest_stems(graph, pose, stems, seen, np.zeros(3), chosen)
+    length = np.linalg.norm(np.diff(stems[limb], axis=1), axis=2).sum(axis=1)
+    pairs = sorted(combinations(range(len(given)), 2), key=lambda pair: abs(np.log(length[pair[0]] / length[pair[1]])))
+    orders = [given, *(_exchanged(given, *pair) for pair in pairs[: chosen.pairs])]
     goals = np.stack([seen[order].reshape(-1, 3) for order in orders])
     ends: list[tuple[Pose, float]] = []
-    for rounds, most in chosen.stages:
+    for rounds, ratio in chosen.stages:
         (_, energy), *ends = swing.reached(goals, rounds)
-        likely = [k for k, (_, least) in enumerate(ends) if least <= most * energy]
+        likely = [k for k, (_, least) in enumerate(ends) if least <= ratio * energy]
         if not likely:
             return []
         goals, ends = goals[[0, *(k + 1 for k in likely)]], [ends[k] for k in likely]
-    return [pose for pose, _ in sorted(ends, key=lambda one: one[1])[: chosen.ways]]
+    return [end for end, _ in sorted(ends, key=lambda one: one[1])[: chosen.ways]]
 
 
 def stem_points(graph: DeformationGraph, stems: Floats, settings: LimbSwingSettings | None = None) -> StemPoints:
@@ -241,15 +244,19 @@ class _Swing(NamedTuple):
         return bent + self.weight * float(np.square(carried(self.graph, pose, self.points) - goal).sum())
 
 
-def _given(
-    graph: DeformationGraph, pose: Pose, stems: Floats, seen: Floats, gone: Floats, chosen: LimbSwingSettings
-) -> tuple[_Swing, Ints]:
-    """What brings limbs to stems, each to the nearest about a centre that has gone so far (xyz,) · (limb,) these stems."""
+def _nearest_stems(
+    graph: DeformationGraph, pose: Pose, stems: Floats, seen: Floats, shift: Floats, chosen: LimbSwingSettings
+) -> tuple[_Swing, Ints, Ints]:
+    """Gives each limb the stem that is nearest once the body is shifted.
+
+    shift   : (xyz,) mesh unit
+    returns : what brings these limbs to any stems · (given,) limbs that have a stem · (given,) number of its stem
+    """
     points = stem_points(graph, stems, chosen)
-    now = carried(graph, pose, points).reshape(stems.shape) + gone
-    limb, other = linear_sum_assignment(np.linalg.norm(now[:, None] - seen[None], axis=3).mean(axis=2))
+    now = carried(graph, pose, points).reshape(stems.shape) + shift
+    limb, stem = linear_sum_assignment(np.linalg.norm(now[:, None] - seen[None], axis=3).mean(axis=2))
     row = (limb[:, None] * stems.shape[1] + np.arange(stems.shape[1])).ravel()
-    return _Swing.of(graph, pose, StemPoints(*(array[row] for array in points)), chosen), other
+    return _Swing.of(graph, pose, StemPoints(*(array[row] for array in points)), chosen), limb, stem
 
 
 def _applied(A: csr_array, x: Floats) -> Floats:

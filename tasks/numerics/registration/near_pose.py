@@ -37,12 +37,13 @@ class NearPoseSettings(NamedTuple):
     lost: float = 0.003
     """Share of a frame's points that may be far beyond the usual; above it a limb is lost. As `TrackingSettings.distant`."""
     strained: float = 0.15
-    """How far the graph bends where limbs may have been exchanged, shares of the area; see `put_right`. With exchanged limbs
-    four people bent it by 0.69 to 1.1, a walker whose legs are near each other by 0.18 for 0.02. Below it time is spared:
-    walkers bend it by 0.02 to 0.1, runners and dancers by 0.1 to 0.6."""
+    """How far the graph bends where limbs may have been exchanged, shares of the area; see `put_right`. With exchanged limbs it
+    bent by 0.93 to 1.2 in four frames of two runners, and by 0.18 in one of a walker whose legs are near each other (right:
+    0.02). Below it time is spared: walkers bend it by 0.02 to 0.2, runners and dancers by 0.1 to 0.6."""
     less_bent: float = 0.9
-    """How far it may bend with the limbs exchanged again, share of how far it bends now: right exchanges of two runners had 0.27
-    to 0.87, wrong ones of recorded bodies 2.4 and more, of a third runner 0.92, which left more of the frame far away."""
+    """How far it may bend with limbs exchanged, share of how far it bends as it is and of how far it bends fitted again from
+    there. Right exchanges of these runners had 0.27 to 0.87 of the latter, wrong ones of recorded bodies 2.4 and more, of a
+    third runner 0.92, which left more of the frame far away."""
 
 
 FITTING = FitSettings(6, (0.2, 0.005), (0.08, 0.03), (0.04, 0.012), (0.05, 0.005), 30, searches=2, thin=1)
@@ -136,24 +137,28 @@ def nearest_pose(
 def put_right(
     body: DeformationGraph, near: NearPose, limbs: FrameLimbs, frame: Target, settings: NearPoseSettings | None = None
 ) -> NearPose:
-    """A near pose without exchanged limbs: a body whose legs are exchanged covers the frame as well, but bends far more (ours).
+    """A near pose without exchanged limbs: a body whose legs are exchanged covers a frame too, but its graph bends more (ours).
 
-    From a pose that bends much near limbs are exchanged by twos; what then lies as near and bends less counts, and is looked
-    through once more.
+    Where the graph bends much, pairs of limbs exchange their stems; what is no farther away, and bends less, counts. Repeated
+    for as long as it helps, once for each limb at most.
 
     body, frame : as in `near_pose`
     limbs       : of the body, and those that this frame shows
-    returns     : the same where nothing was exchanged
+    returns     : the same object where nothing was exchanged
     """
     chosen = settings or NearPoseSettings()
+    most = max(near.distant, chosen.lost)
     for _ in range(len(limbs.rest)):
-        if bending(body, near.pose) <= chosen.strained * body.size**2:
+        bends = bending(body, near.pose)
+        if bends <= chosen.strained * body.size**2:
             break
-        others = with_two_exchanged(body, near.pose, limbs.rest, limbs.frame)
-        found = [near_pose(body, start, frame, chosen) for start in (near.pose, *others)]
-        alike = [one for one in found[1:] if one.distant <= max(found[0].distant, near.distant) + chosen.lost]
-        best = min(alike, key=lambda one: bending(body, one.pose), default=found[0])
-        if bending(body, best.pose) > chosen.less_bent * bending(body, found[0].pose):
+        exchanged = with_two_exchanged(body, near.pose, limbs.rest, limbs.frame)
+        if not exchanged:
+            break
+        again, *fits = (near_pose(body, start, frame, chosen) for start in (near.pose, *exchanged))
+        as_near = [one for one in fits if one.distant <= most]
+        best = min(as_near, key=lambda one: bending(body, one.pose), default=again)
+        if bending(body, best.pose) > chosen.less_bent * min(bends, bending(body, again.pose)):
             break
         near = best
     return near

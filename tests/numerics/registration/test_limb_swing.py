@@ -156,7 +156,7 @@ def test_arms_that_were_exchanged_are_where_they_belong_in_the_pose_of_least_ene
 def test_limbs_that_are_right_have_no_exchange_as_likely_and_ways_are_at_most_as_many_as_asked_for(reaching):
     body, stems = reaching
     assert with_two_exchanged(body, at_rest(body), stems, twisted(stems, 0.5)) == []
-    every = LimbSwingSettings(stages=((2, np.inf),), nearest=5, ways=4)
+    every = LimbSwingSettings(stages=((2, np.inf),), pairs=5, ways=4)
     assert len(with_two_exchanged(body, at_rest(body), stems, twisted(stems, 0.5), every)) == 4
 
 

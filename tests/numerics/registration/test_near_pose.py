@@ -139,7 +139,7 @@ def twisted_frame():
 def test_arms_that_were_exchanged_are_put_right(twisted_frame):
     body, limbs, frame, wrong, goal = twisted_frame
     assert np.linalg.norm(shape(body, wrong.pose)[0] - goal, axis=1).max() > 5.0
-    right = put_right(body, wrong, limbs, frame, SETTINGS._replace(strained=0.1))
+    right = put_right(body, wrong, limbs, frame)
     assert not is_lost(right, 0.0)
     assert np.linalg.norm(shape(body, right.pose)[0] - goal, axis=1).max() < 2.0
     assert put_right(body, right, limbs, frame, SETTINGS._replace(strained=0.0)) is right, "right limbs stay, bent or not"
@@ -157,4 +157,31 @@ def test_an_exchange_that_leaves_more_of_the_frame_far_away_is_not_taken(twisted
     rest = at_rest(body)
     unbent = Pose(rest.rotation, rest.translation + [0.0, 0.0, 10.0 * body.size])
     monkeypatch.setattr(module, "with_two_exchanged", lambda *given: [unbent])
-    assert put_right(body, wrong, limbs, frame, SETTINGS._replace(strained=0.1)) is wrong
+    assert put_right(body, wrong, limbs, frame) is wrong
+
+
+@pytest.mark.parametrize(
+    ("angles", "left"),
+    [((2.0, 1.0), 1.0), ((2.0, 1.87), 1.87), ((2.0, 1.92), 2.0), ((2.0, 1.5, 1.2), 1.2), ((2.0, 1.7, 1.4), 1.4)],
+)
+def test_of_exchanges_the_least_bent_counts_if_it_bends_less_than_nine_tenths_as_it_is(body, monkeypatch, angles, left):
+    """The angles by which the tube is wrung as it is, and with limbs exchanged: 1.87² is 0.87 of 2², 1.92² is 0.92."""
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    here, *others = (NearPose(wrung(thin, angle), 0.0) for angle in angles)
+    monkeypatch.setattr(
+        module, "with_two_exchanged", lambda graph, pose, *limbs: [o.pose for o in others] if pose is here.pose else []
+    )
+    monkeypatch.setattr(module, "near_pose", lambda graph, pose, *given: NearPose(pose, 0.0))
+    stems = FrameLimbs(np.zeros((2, 5, 3)), np.zeros((2, 5, 3)), np.zeros(3))
+    found = put_right(thin, here, stems, frame, SETTINGS._replace(strained=0.0))
+    assert bending(thin, found.pose) == pytest.approx(bending(thin, wrung(thin, left)))
+
+
+def test_exchanges_go_on_for_as_long_as_they_help_once_for_each_limb_at_most(body, monkeypatch):
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    angles = iter((1.6, 1.2, 0.8))
+    monkeypatch.setattr(module, "with_two_exchanged", lambda *given: [wrung(thin, next(angles))])
+    monkeypatch.setattr(module, "near_pose", lambda graph, pose, *given: NearPose(pose, 0.0))
+    stems = FrameLimbs(np.zeros((2, 5, 3)), np.zeros((2, 5, 3)), np.zeros(3))
+    found = put_right(thin, NearPose(wrung(thin, 2.0), 0.0), stems, frame, SETTINGS._replace(strained=0.0))
+    assert bending(thin, found.pose) == pytest.approx(bending(thin, wrung(thin, 1.2)))
