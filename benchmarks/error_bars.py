@@ -1,16 +1,15 @@
 """Fits the constants of the expected error of joints to generated bodies, and says what they are worth on others.
 
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-    python benchmarks/error_bars.py [--seeds 10] [--frames 14] [--vertices 2000] [--figures human quadruped random adult]
-                                    [--fixed 4] [--long 3] [--uncertain 0.5] [--spoilt FOLDER] [--data FOLDER] [--work FOLDER]
+    python benchmarks/error_bars.py [--seeds 10] [--frames 14] [--vertices 2000] [--figures human quadruped random]
+                                    [--fixed 4] [--long 3] [--spoilt FOLDER] [--data FOLDER] [--work FOLDER]
 
 Bodies are those of `benchmarks/accuracy.py`, with --fixed of them of fixed connectivity and --long of them of more frames
 and vertices, and those that an earlier call of `benchmarks/robustness.py --work FOLDER` left, with noise, holes, missing frames
 and clothes. The constants are fitted to even seeds, of every run with one cut and with several, and printed as
 `ErrorBarsSettings` has them. Where joints have surface offsets, exponents lie a fifth of the way to the law of those that have
 none, each figure keeps the bound, and the longer bodies do too. The least error and the bound of the other laws are fitted to
-bodies of fixed connectivity too; what takes the place of the least error there, to them alone. --uncertain says how much errors
-grow where the confidence is 0; without it that is fitted too.
+bodies of fixed connectivity too; what takes the place of the least error there, to them alone.
 Spoilt bodies count for several cuts alone. The tables judge the shipped constants, and the fitted ones, on odd seeds and on the
 recorded sequences of FOLDER (NAME.npz beside NAME.truth.json), to which nothing is fitted.
 A joint's error is the mean distance from its true joint; of a spurious joint, from the nearest. Columns: joints; share that
@@ -208,10 +207,9 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--frames", type=int, default=14)
     parser.add_argument("--vertices", type=int, default=2000)
-    parser.add_argument("--figures", nargs="*", default=["human", "quadruped", "random", "adult"])
+    parser.add_argument("--figures", nargs="*", default=["human", "quadruped", "random"])
     parser.add_argument("--fixed", type=int, default=4, help="how many seeds of fixed connectivity")
     parser.add_argument("--long", type=int, default=3, help="how many seeds of more frames")
-    parser.add_argument("--uncertain", type=float, help="how much errors grow where the confidence is 0, if not fitted")
     parser.add_argument("--spoilt", type=Path)
     parser.add_argument("--data", type=Path)
     parser.add_argument("--work", type=Path)
@@ -243,7 +241,7 @@ def main() -> None:
     judged_by = {"shipped": shipped}
     if asked.seeds:
         learned = [[named(of, "even", fixed) for fixed in (False, True)] for of in (several, one)]
-        uncertain = fitted_widening(learned[0][0]) if asked.uncertain is None else asked.uncertain
+        uncertain = fitted_widening(learned[0][0])
         laws = [fitted_law(*runs, uncertain) for runs in learned]
         has_offset = any(np.isfinite(run.features.offset).any() for run in learned[0][0])
         of_more = [run for name, runs in several.items() if name.startswith("long") and "even" in name for run in runs]

@@ -97,9 +97,9 @@ def test_a_joint_in_softer_skin_is_worse_and_one_with_a_joint_below_that_turns_i
     for settings in (SETTINGS, ErrorBarsSettings()):
         soft = error_bars(features(softness=np.array([0.02, 0.1, 0.3]), **same), 4, settings).expected
         assert soft[0] < soft[1] < soft[2]
+        below = error_bars(features(below=np.array([60.0, 10.0, 0.0]), **same), 4, settings).expected
+        assert below[0] < below[1] < below[2]
         assert np.isfinite(error_bars(features(softness=np.zeros(3), **same), 4, settings).expected).all()
-    below = error_bars(features(below=np.array([60.0, 10.0, 0.0]), **same), 4, SETTINGS).expected
-    assert below[0] < below[1] < below[2]
 
 
 def test_a_joint_off_the_axes_of_its_parts_is_worse_and_one_without_parts_is_worst() -> None:
