@@ -9,7 +9,7 @@ from shipped import GRAPH
 from kinetree.tasks.numerics.registration import near_pose as module
 from kinetree.tasks.numerics.registration.deformation import Pose, at_rest, bending, shape
 from kinetree.tasks.numerics.registration.deformation_graph import deformation_graph
-from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings, swings
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings, swings, with_two_exchanged
 from kinetree.tasks.numerics.registration.near_pose import (
     NearPose,
     NearPoseSettings,
@@ -143,6 +143,21 @@ def test_arms_that_were_exchanged_are_put_right(twisted_frame):
     assert not is_lost(right, 0.0)
     assert np.linalg.norm(shape(body, right.pose)[0] - goal, axis=1).max() < 2.0
     assert put_right(body, right, limbs, frame, SETTINGS._replace(strained=0.0)) is right, "right limbs stay, bent or not"
+
+
+def test_legs_that_were_exchanged_cover_the_frame_whole_and_are_put_right():
+    surface, faces, stems = reaching_body()
+    body = thinned_body(deformation_graph(surface, faces, GRAPH._replace(nodes=150)))
+    frame = thinned_frame(surface, faces, body.size)
+    exchanged = with_two_exchanged(body, at_rest(body), stems, stems, LimbSwingSettings(stages=((40, np.inf),), ways=1))[0]
+    wrong = near_pose(body, exchanged, frame)
+    for _ in range(3):
+        wrong = near_pose(body, wrong.pose, frame)
+    assert not is_lost(wrong, 0.0)
+    assert np.linalg.norm(shape(body, wrong.pose)[0] - body.V, axis=1).max() > 4.0
+    right = put_right(body, wrong, FrameLimbs(stems, stems, np.zeros(3)), frame)
+    assert not is_lost(right, 0.0)
+    assert np.linalg.norm(shape(body, right.pose)[0] - body.V, axis=1).max() < 0.2
 
 
 def test_what_bends_little_is_not_looked_at_and_the_limit_is_a_share_of_the_area(twisted_frame):
