@@ -126,9 +126,9 @@ def with_two_exchanged(
 ) -> list[Pose]:
     """Poses with the stems of two limbs exchanged whose energy is little more than with the stems as they are (ours).
 
-    Two limbs exchange theirs where they are nearly as long as each other. From a pose whose limbs were exchanged few rounds say
-    little, so the likelier an exchange is, the more rounds it has (`stages`). A limb that the frame does not show, and a stem
-    that no limb has, is not exchanged.
+    Tried are the pairs of limbs most alike in length. From a pose whose limbs were exchanged few rounds say little, so the
+    likelier an exchange is, the more rounds it has (`stages`). A limb that the frame does not show, and a stem that no limb
+    has, is not exchanged.
 
     graph   : of the reference mesh
     pose    : of this frame, as it was fitted
@@ -141,7 +141,8 @@ def with_two_exchanged(
         return []
     swing, limb, given = _nearest_stems(graph, pose, stems, seen, np.zeros(3), chosen)
     length = np.linalg.norm(np.diff(stems[limb], axis=1), axis=2).sum(axis=1)
-    pairs = sorted(combinations(range(len(given)), 2), key=lambda pair: abs(np.log(length[pair[0]] / length[pair[1]])))
+    size = np.log(np.maximum(length, np.finfo(float).tiny))
+    pairs = sorted(combinations(range(len(given)), 2), key=lambda pair: abs(size[pair[0]] - size[pair[1]]))
     orders = [given, *(_exchanged(given, *pair) for pair in pairs[: chosen.pairs])]
     goals = np.stack([seen[order].reshape(-1, 3) for order in orders])
     ends: list[tuple[Pose, float]] = []

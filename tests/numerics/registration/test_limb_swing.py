@@ -164,3 +164,16 @@ def test_limbs_that_are_right_have_no_exchange_as_likely_and_ways_are_at_most_as
 def test_one_limb_has_none_to_be_exchanged_with(reaching, limbs, shown):
     body, stems = reaching
     assert with_two_exchanged(body, at_rest(body), stems[:limbs], stems[:shown], LimbSwingSettings(stages=((2, np.inf),))) == []
+
+
+def test_a_limb_without_length_is_the_least_alike_and_no_matter(reaching):
+    body, stems = reaching
+    stems = np.concatenate([stems, np.tile([0.0, 0.0, 3.9], (1, 5, 1))])
+    assert with_two_exchanged(body, at_rest(body), stems, twisted(stems, 0.5)) == []
+
+
+@pytest.mark.parametrize(("limbs", "shown"), [(4, 3), (3, 4)])
+def test_what_the_frame_does_not_show_and_what_no_limb_has_is_not_exchanged(reaching, limbs, shown):
+    body, stems = reaching
+    every = LimbSwingSettings(stages=((2, np.inf),), pairs=6, ways=6)
+    assert len(with_two_exchanged(body, at_rest(body), stems[:limbs], stems[:shown], every)) == 3
