@@ -200,3 +200,20 @@ def test_exchanges_go_on_for_as_long_as_they_help_once_for_each_limb_at_most(bod
     stems = FrameLimbs(np.zeros((2, 5, 3)), np.zeros((2, 5, 3)), np.zeros(3))
     found = put_right(thin, NearPose(wrung(thin, 2.0), 0.0), stems, frame, SETTINGS._replace(strained=0.0))
     assert bending(thin, found.pose) == pytest.approx(bending(thin, wrung(thin, 1.2)))
+
+
+@pytest.mark.parametrize(
+    ("distant", "settled", "left"), [(0.002, 2.0, 1.0), (0.004, 2.0, 2.0), (0.0, 1.04, 2.0), (0.0, 1.2, 1.0)]
+)
+def test_an_exchange_may_be_hardly_farther_away_and_must_bend_less_than_the_pose_fitted_again(
+    body, monkeypatch, distant, settled, left
+):
+    """settled: the angle by which the tube is wrung once it is fitted again as it is; 1² is 0.92 of 1.04², 0.69 of 1.2²."""
+    thin, frame = thinned_body(body), thinned_frame(V, F, body.size)
+    here, other = wrung(thin, 2.0), wrung(thin, 1.0)
+    fits = {id(here): NearPose(wrung(thin, settled), 0.0), id(other): NearPose(other, distant)}
+    monkeypatch.setattr(module, "with_two_exchanged", lambda graph, pose, *limbs: [other] if pose is here else [])
+    monkeypatch.setattr(module, "near_pose", lambda graph, pose, *given: fits[id(pose)])
+    stems = FrameLimbs(np.zeros((2, 5, 3)), np.zeros((2, 5, 3)), np.zeros(3))
+    found = put_right(thin, NearPose(here, 0.0), stems, frame, SETTINGS._replace(strained=0.0))
+    assert bending(thin, found.pose) == pytest.approx(bending(thin, wrung(thin, left)))
