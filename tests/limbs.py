@@ -1,4 +1,4 @@
-"""Limbs whose every point's way is known: closed tubes, bent at a joint, cut anew for every frame."""
+"""Limbs whose every point's way is known: closed tubes bent at a joint, cut anew for every frame, and a body that twists."""
 
 import numpy as np
 import numpy.typing as npt

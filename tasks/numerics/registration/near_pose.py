@@ -39,7 +39,8 @@ class NearPoseSettings(NamedTuple):
     strained: float = 0.15
     """How far the graph bends where limbs may have been exchanged, shares of the area; see `put_right`. With exchanged limbs it
     bent by 0.93 to 1.2 in four frames of two runners, and by 0.18 in one of a walker whose legs are near each other (right:
-    0.02). Below it time is spared: walkers bend it by 0.02 to 0.2, runners and dancers by 0.1 to 0.6."""
+    0.02). Below it time is spared, of few frames of people and of six in seven of a wolf: right limbs bend the graph
+    by 0.1 to 0.25 in the median of a body, of a runner by 0.46."""
     less_bent: float = 0.9
     """How far it may bend with limbs exchanged, share of how far it bends as it is and of how far it bends fitted again from
     there. Right exchanges of these runners had 0.27 to 0.87 of the latter, wrong ones of recorded bodies 2.4 and more, of a

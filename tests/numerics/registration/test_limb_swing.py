@@ -30,6 +30,13 @@ def bent_stems(angle, order=(1, 0)):
     return np.stack([bent(stem, angle) for stem in STEMS])[list(order)], bent(V, angle).mean(axis=0)
 
 
+@pytest.fixture(scope="module")
+def reaching():
+    """The body that reaches, with a deformation graph of 150 nodes · its stems."""
+    surface, faces, stems = reaching_body()
+    return deformation_graph(surface, faces, GRAPH._replace(nodes=150)), stems
+
+
 def test_points_at_rest_lie_where_they_are_and_turn_with_the_body(body):
     points = stem_points(body, STEMS)
     np.testing.assert_allclose(points.weight.sum(axis=1), 1.0)
@@ -70,9 +77,8 @@ def test_a_limb_that_the_frame_does_not_show_goes_along_with_the_others(body):
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 1, 0, 2)])
-def test_arms_stay_on_their_sides_where_the_trunk_twists_and_each_comes_nearer_to_the_place_of_the_other_one(order):
-    surface, faces, stems = reaching_body()
-    body = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+def test_arms_stay_on_their_sides_where_the_trunk_twists_and_each_comes_nearer_to_the_place_of_the_other_one(reaching, order):
+    body, stems = reaching
     goal = twisted(stems, 1.65)
     assert np.linalg.norm(goal[1::-1] - stems[:2], axis=2).mean() < np.linalg.norm(goal[:2] - stems[:2], axis=2).mean()
     centre = twisted(shape(body, at_rest(body))[0][body.sample], 1.65).mean(axis=0)
@@ -80,10 +86,9 @@ def test_arms_stay_on_their_sides_where_the_trunk_twists_and_each_comes_nearer_t
     np.testing.assert_allclose(carried(body, swing, stem_points(body, stems)), goal.reshape(-1, 3), atol=1.0)
 
 
-def off(angle, settings=None):
+def off(reaching, angle, settings=None):
     """(limb,) how far the limbs of the body at rest end from where they are, after its trunk has twisted."""
-    surface, faces, stems = reaching_body()
-    body = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+    body, stems = reaching
     centre = twisted(shape(body, at_rest(body))[0][body.sample], angle).mean(axis=0)
     goal = twisted(stems, angle)
     swing = swings(body, at_rest(body), stems, goal, centre, settings)[0]
@@ -92,16 +97,15 @@ def off(angle, settings=None):
 
 
 @pytest.mark.parametrize("strict", [{"exchange": 0.1}, {"begun": 0.5}])
-def test_limbs_keep_the_nearest_stems_where_the_body_would_not_bend_clearly_less(strict):
-    assert off(1.65).max() < 1.0
-    assert off(1.65, LimbSwingSettings(**strict))[:2].min() > 3.0
+def test_limbs_keep_the_nearest_stems_where_the_body_would_not_bend_clearly_less(reaching, strict):
+    assert off(reaching, 1.65).max() < 1.0
+    assert off(reaching, 1.65, LimbSwingSettings(**strict))[:2].min() > 3.0
 
 
 @pytest.mark.parametrize(("angle", "likely", "ways"), [(1.65, 1.15, 1), (2.1, 1.15, 2), (2.1, 1.0, 1)])
-def test_where_both_ways_of_swinging_the_arms_are_as_likely_both_are_given(angle, likely, ways):
+def test_where_both_ways_of_swinging_the_arms_are_as_likely_both_are_given(reaching, angle, likely, ways):
     """Turned by 120°, either arm may as well have gone the other way round."""
-    surface, faces, stems = reaching_body()
-    body = deformation_graph(surface, faces, GRAPH._replace(nodes=150))
+    body, stems = reaching
     goal = twisted(stems, angle)
     centre = twisted(shape(body, at_rest(body))[0][body.sample], angle).mean(axis=0)
     found = swings(body, at_rest(body), stems, goal, centre, LimbSwingSettings(likely=likely))
@@ -132,13 +136,6 @@ def test_a_piece_that_lies_apart_and_has_no_limb_goes_along_with_the_body(turn, 
     centre = shape(graph, at_rest(graph))[0][graph.sample].mean(axis=0)
     found = swings(graph, at_rest(graph), stems, stems + raised, centre + raised)[0]
     np.testing.assert_allclose(shape(graph, found)[0][apart], both[apart] + raised, atol=0.02 * LENGTH)
-
-
-@pytest.fixture(scope="module")
-def reaching():
-    """The body that reaches, with a deformation graph of 150 nodes · its stems."""
-    surface, faces, stems = reaching_body()
-    return deformation_graph(surface, faces, GRAPH._replace(nodes=150)), stems
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 1, 0, 2)])
@@ -177,3 +174,13 @@ def test_what_the_frame_does_not_show_and_what_no_limb_has_is_not_exchanged(reac
     body, stems = reaching
     every = LimbSwingSettings(stages=((2, np.inf),), pairs=6, ways=6)
     assert len(with_two_exchanged(body, at_rest(body), stems[:limbs], stems[:shown], every)) == 3
+
+
+@pytest.mark.parametrize("order", [(2, 0, 3, 1), (3, 1, 0, 2)])
+def test_limbs_alike_in_length_are_exchanged_in_whatever_order_the_frame_shows_them(reaching, order):
+    body, stems = reaching
+    both = LimbSwingSettings(stages=((5, np.inf),), pairs=2)
+    sorted_, shuffled = (with_two_exchanged(body, at_rest(body), stems, stems[list(of)], both) for of in ((0, 1, 2, 3), order))
+    assert len(sorted_) == 2
+    for one, other in zip(sorted_, shuffled, strict=True):
+        np.testing.assert_allclose(other.translation, one.translation, atol=1e-6)
