@@ -38,11 +38,15 @@ class JointParams(PruningParams):
     """The same where some other joint of the body moves clearly."""
 
 
-class CutJointsParams(PruningParams):
-    """What counts as a joint of a cut."""
+class HiddenBonesParams(Params):
+    """Which bones no cut can find."""
 
     hidden_bones: bool = True
     """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
+
+
+class CutJointsParams(PruningParams, HiddenBonesParams):
+    """What counts as a joint of a cut."""
 
 
 class FirstTreeParams(JointParams, CutJointsParams):
@@ -74,7 +78,11 @@ class ShapeParams(Params):
     off."""
 
 
-class KinematicTreeParams(ShapeParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
+class PlacedTreeParams(ShapeParams, HiddenBonesParams):
+    """Which joints shape alone gives, or the length of bones."""
+
+
+class KinematicTreeParams(PlacedTreeParams, ExtendedTreeParams, AgreedTreeParams, FirstTreeParams):
     """What counts as a joint, and where joints are looked for and placed."""
 
 

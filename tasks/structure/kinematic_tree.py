@@ -11,7 +11,7 @@ from kinetree.schemas.registration.reference import Reference
 from kinetree.schemas.structure.extended_tree import ExtendedTree
 from kinetree.schemas.structure.first_tree import FirstTree
 from kinetree.schemas.structure.further_cut import FurtherCut
-from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, ShapeParams
+from kinetree.schemas.structure.kinematic_tree import KinematicTree, KinematicTreeParams, PlacedTreeParams
 from kinetree.schemas.structure.laid_parts import LaidParts
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.schemas.topology.up_direction import UpDirection
@@ -35,7 +35,7 @@ def kinematic_tree(
     alignment: Mapping[int, Alignment],
     leaves: Leaves,
     up_direction: UpDirection,
-    params: ShapeParams,
+    params: PlacedTreeParams,
 ) -> KinematicTree:
     """Places the joints of the tree where all cuts have them, and poses it in every frame (2014, Sec. 6.3)."""
     frames, body, agreed = tuple(alignment), aligned_body(reference, alignment, leaves), restored(extended_tree)
@@ -49,6 +49,7 @@ def kinematic_tree(
             for frame, cut in further_cut.items()
         ],
         laid=joined(laid_parts),
+        has_links=params.hidden_bones and body.is_given,
         has_necks=params.necks,
         has_narrowings=params.narrowings and not body.is_given,
         has_mirrored_joints=params.mirrored_joints and not body.is_given,

@@ -74,6 +74,11 @@ class FirstTree(NamedTuple):
         return bool(len(self.parents) - len(self.shown) > (self.place >= 0).sum())
 
     @property
+    def is_hidden(self) -> Flags:
+        """(part,) whether a part is none of those that were given."""
+        return ~np.isin(np.arange(len(self.parents)), self.place)
+
+    @property
     def at_ends(self) -> Flags:
         """(vertex,) whether a vertex is of a part on either side of a joint that the frames' surfaces alone show."""
         beyond = np.array(self.shown, np.int64)

@@ -138,7 +138,7 @@ def hidden_bone(
     chosen, size = settings or HiddenBonesSettings(), float(np.sqrt(skin.area.sum()))
     if between.drift < 0.5 * chosen.drift * size:
         return None
-    near = _skin_around(skin, between, chosen.narrow * size, chosen)
+    near = skin_around(skin, between, chosen)
     if len(near) < chosen.least_vertices:
         return None
     bone = _fitted(skin, between, near, score_spans(len(skin.x), takes), chosen)
@@ -165,11 +165,19 @@ def is_bone(bone: HiddenBone, between: Border, size: float, settings: HiddenBone
     )
 
 
-def _skin_around(skin: MovingSkin, between: Border, narrow: float, chosen: HiddenBonesSettings) -> Ints:
+def skin_around(skin: MovingSkin, between: Border, chosen: HiddenBonesSettings) -> Ints:
     """(near,) vertices near the joint that follow mostly the two parts."""
     away = np.linalg.norm(skin.V - between.joint, axis=1)
     both = skin.W[:, [between.above, between.part]].sum(axis=1)
+    narrow = chosen.narrow * float(np.sqrt(skin.area.sum()))
     return np.flatnonzero((away < chosen.reach * max(between.radius, narrow)) & (both > chosen.skin))
+
+
+def parts_around(skin: MovingSkin, between: Border, near: Ints, chosen: HiddenBonesSettings) -> Ints:
+    """(part,) the part above, the part below, and the others that skin (near,) follows most."""
+    others = [p for p in np.argsort(-skin.W[near].sum(axis=0), kind="stable") if p not in (between.above, between.part)]
+    used = [p for p in others[: chosen.others] if skin.W[near, p].any()]
+    return np.array([between.above, between.part, *used])
 
 
 def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: HiddenBonesSettings) -> HiddenBone:
@@ -177,9 +185,7 @@ def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: 
 
     It is fitted to some vertices in some frames; its motion is then that of all frames, and all skin near it has weights.
     """
-    others = [p for p in np.argsort(-skin.W[near].sum(axis=0), kind="stable") if p not in (between.above, between.part)]
-    used = [p for p in others[: chosen.others] if skin.W[near, p].any()]
-    parts, hold = np.array([between.above, between.part, *used]), (chosen.noise * float(np.sqrt(skin.area.sum()))) ** 2
+    parts, hold = parts_around(skin, between, near, chosen), (chosen.noise * float(np.sqrt(skin.area.sum()))) ** 2
     sample = near[np.linspace(0, len(near) - 1, min(chosen.most_vertices, len(near))).astype(np.int64)]
     some = slice(None, None, -(-len(skin.x) // chosen.most_frames))
     few = skin.of(sample, parts, some).weighed(hold)
@@ -191,14 +197,25 @@ def _fitted(skin: MovingSkin, between: Border, near: Ints, spans: Ints, chosen: 
     )
     sampled = refitted(skin.of(sample, parts, slice(None)).with_bone(*half, 0.0)._replace(W=found.W))
     whole = skin.of(near, parts, slice(None)).with_bone(sampled.R[:, -1], sampled.t[:, -1], 0.0).weighed(hold)
+    joints = blend_joints(whole, np.full(2, between.radius), whole.bone_residual(), chosen.prior)
+    return bone_of_skin(whole, near, joints, widest_blend_drift(whole, joints.rest, spans), spans, chosen)
+
+
+def bone_of_skin(
+    whole: MovingSkin, near: Ints, joints: Joints, widest: Floats, spans: Ints, chosen: HiddenBonesSettings
+) -> HiddenBone:
+    """The last part of some skin as a bone between the first two.
+
+    near   : (vertex,) vertices that this skin has
+    joints : with the first and the second part
+    widest : (side,) drift of these in the span (span, 2) in which they drift most, mesh unit
+    """
     own = whole.W[:, -1]
-    residual = whole.bone_residual()
-    joints = blend_joints(whole, np.full(2, between.radius), residual, chosen.prior)
-    widest = widest_blend_drift(whole, joints.rest, spans)
     degrees = np.array([widest_turning_range(whole.R[:, k].transpose(0, 2, 1) @ whole.R[:, -1], spans) for k in (0, 1)])
     follows = (own > 0.0) & (own >= np.minimum(whole.W[:, :-1].max(axis=1), chosen.follower * own.max()))
     motion = whole.R[:, -1], whole.t[:, -1]
-    return HiddenBone(*motion, joints.rest, joints.drift, widest, degrees, near[follows], float(whole.area @ own), residual)
+    area, residual = float(whole.area @ own), whole.bone_residual()
+    return HiddenBone(*motion, joints.rest, joints.drift, widest, degrees, near[follows], area, residual)
 
 
 def blend_joints(fit: MovingSkin, radius: Floats, residual: Floats, prior: RotationCentresSettings) -> Joints:

@@ -14,16 +14,18 @@ from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.linked_parts import with_rigid_links
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
 from kinetree.tasks.numerics.structure.narrowings import narrowings
 from kinetree.tasks.numerics.structure.necks import necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.posed_tree import joints_and_ends, posed_tree, with_spine
+from kinetree.tasks.numerics.structure.posed_tree import joints_and_ends, joints_of_all_cuts, posed_tree, with_spine
 from kinetree.tasks.numerics.structure.pruning import Dropped
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.second_ends import second_ends
 from kinetree.tasks.numerics.structure.skinning import heaviest
 from kinetree.tasks.numerics.structure.still_joints import PosedTree, Still, with_still_joints
+from kinetree.tasks.numerics.structure.tree_joints import NOISE
 
 RIGID_WEIGHT = 0.75
 """Skinning weight of one part above which a vertex belongs to it. Not recorded; it changes labels alone."""
@@ -116,6 +118,7 @@ def kinematic_tree(
     *,
     further: Sequence[Floats] = (),
     laid: LaidParts | None = None,
+    has_links: bool = False,
     has_second_ends: bool = False,
     has_necks: bool = False,
     has_narrowings: bool = False,
@@ -130,6 +133,8 @@ def kinematic_tree(
     further    : (frame, joint, xyz) of every cut of the body but the tree's own; joints of the tree are then the mean
                  over all cuts that have them
     laid       : parts on the frames' surfaces, where joints are moved to; None moves none
+    has_links       : whether bones that their length alone shows are looked for, see `with_rigid_links`; where every vertex was
+                      followed
     has_second_ends : whether the last part of a limb also ends where it stands out beside its tip, see `second_ends`
     has_necks       : whether joints are moved to tubes, and joints added that the shape of tubes alone shows, see `necks`
     has_narrowings  : whether both limbs of a pair have a joint beyond a narrowing, see `narrowings`
@@ -140,8 +145,11 @@ def kinematic_tree(
     V = body.V
     if first.shown:
         body = first.with_ends(body)
+    joints = joints_of_all_cuts(first, further, body.size)
+    if has_links:
+        first, joints = with_rigid_links(body, first, joints, NOISE * body.size)
     hanging = tubes(V, body.F, first.label, first.parents, first.radius) if has_necks else []
-    tree = posed_tree(body, first, confidence, further, laid, hanging)
+    tree = posed_tree(body, first, confidence, joints, laid, hanging)
     if up is not None:
         tree = with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
     if found := list(necks(hanging, tree.motion.rest, first.shown)):

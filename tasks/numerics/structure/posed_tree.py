@@ -58,18 +58,17 @@ def joints_and_ends(V: Floats, tree: PosedTree, ends: Ints) -> JointsAndEnds:
 
 
 def posed_tree(
-    body: MovingSurface, first: FirstTree, confidence: Floats | None, further: Sequence[Floats], laid: LaidParts | None,
+    body: MovingSurface, first: FirstTree, confidence: Floats | None, consensus: JointConsensus, laid: LaidParts | None,
     hanging: Sequence[Tube],
 ) -> PosedTree:  # fmt: skip
     """The tree in every frame; its joints are where all cuts have them, moved to tubes and to the frames' surfaces.
 
     confidence : (frame, vertex) 0 to 1; None where every vertex was followed
-    further    : (frame, joint, xyz) of every cut but the tree's own, mesh unit
+    consensus  : the joints of all parts, see `joints_of_all_cuts`
     laid       : parts on the frames' surfaces; None moves no joint there
     hanging    : tubes that joints are moved to
     """
     parts = len(first.parents)
-    consensus = _consensus(first, further, body.size)
     shared = shared_joints(first, consensus.rest, body.size, body.takes)
     rest, on_tube = _on_tubes(first, hanging, shared.rest)
     on_surface = SurfaceJoints(rest, *np.full((2, parts), np.nan))
@@ -136,8 +135,12 @@ def _on_tubes(first: FirstTree, hanging: Sequence[Tube], joints: Floats) -> tupl
     return np.where(certain[:, None], joints, rest), stays & ~certain
 
 
-def _consensus(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
-    """Joints of the tree as all cuts place them; the root as it is."""
+def joints_of_all_cuts(first: FirstTree, further: Sequence[Floats], size: float) -> JointConsensus:
+    """(part,) joints of the tree as all cuts place them; the root as it is.
+
+    further : (frame, joint, xyz) of every cut but the tree's own, mesh unit
+    size    : root of the area, mesh unit
+    """
     count = len(first.rest)
     if not further:
         return JointConsensus(first.rest, np.full(count, np.nan), np.minimum(np.arange(count), 1))
