@@ -45,7 +45,7 @@ class HiddenBonesParams(Params):
     """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
 
 
-class CutJointsParams(PruningParams, HiddenBonesParams):
+class CutJointsParams(HiddenBonesParams, PruningParams):
     """What counts as a joint of a cut."""
 
 

@@ -463,7 +463,9 @@ def test_tasks_are_the_table_of_contents(kinetree):
     assert {r["task"]: r["set_by"] for r in rows if r["set_by"]} == {
         "rigid_parts": [f"rigid_parts.{name}" for name in ("rings", "patches", "removal_cost")],
         "extended_tree": ["kinematic_tree.surface_joints"],
-        "kinematic_tree": [f"kinematic_tree.{name}" for name in ("necks", "narrowings", "mirrored_joints", "spine")],
+        "kinematic_tree": [
+            f"kinematic_tree.{name}" for name in ("hidden_bones", "necks", "narrowings", "mirrored_joints", "spine")
+        ],
         "cut_poses": [f"rigid_parts.{name}" for name in ("rings", "patches", "removal_cost", "cuts")],
         "further_cut": [f"kinematic_tree.{name}" for name in ("degrees", "ratio", "hidden_bones")],
         "first_tree": [

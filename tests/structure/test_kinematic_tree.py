@@ -228,3 +228,18 @@ def test_joints_are_averaged_with_those_of_all_other_cuts_and_of_the_first(monke
     found = tree_of(merged, cut_frames=(FIRST + 5, FIRST + 9))
     assert found.cut_frame == FIRST + 5
     assert [[joints.shape[1] for joints in further] for further in told] == [[2, 3]], "the first cut has two of three joints"
+
+
+@pytest.mark.parametrize(("trust", "hidden_bones", "is_asked"), [(1.0, True, True), (1.0, False, False), (0.9, True, False)])
+def test_links_are_looked_for_where_the_frames_give_every_vertex_and_hidden_bones_are_wanted(
+    trust: float, hidden_bones: bool, is_asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body, asked = three_arms(), []
+
+    def listening(_: Any, tree: Any, joints: Any, noise: float) -> Any:
+        asked.append(noise)
+        return tree, joints
+
+    monkeypatch.setattr("kinetree.tasks.numerics.structure.kinematic_tree.with_rigid_links", listening)
+    tree_of(body, np.full(body.x.shape[:2], trust), hidden_bones=hidden_bones, end_joints=False)
+    assert bool(asked) == is_asked

@@ -81,6 +81,7 @@ def with_rigid_links(
             link = rigid_link(_between(tree, border), expected, chosen.mirror_spread, chosen.link.frames_alike)
             if (bone := _bone(body, tree, border, link, chosen)) is not None:
                 links[k] = bone
+                break
     return _with_links(body, tree, joints, dict(sorted(links.items())), noise) if links else LinkedTree(tree, joints)
 
 
