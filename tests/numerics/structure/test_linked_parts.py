@@ -5,10 +5,13 @@ import pytest
 from articulated import ALL_STAY, Known, chain, moved, neck, neck_ends, surface, swings
 from shapes import y_pipe
 
+from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.structure import linked_parts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.hidden_bones import HiddenBonesSettings
 from kinetree.tasks.numerics.structure.joint_consensus import JointConsensus
 from kinetree.tasks.numerics.structure.linked_parts import LinkedPartsSettings, LinkedTree, with_rigid_links
+from kinetree.tasks.numerics.structure.rigid_links import Between, RigidLink, RigidLinksSettings
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 NOISE = 0.002
@@ -149,3 +152,29 @@ def test_joints_are_where_all_cuts_have_them_before_links_are_looked_for() -> No
     kept = [k for k in range(1, 6) if not found.tree.is_hidden[[k, found.tree.parents[k]]].any()]
     assert len(kept) == 1
     np.testing.assert_array_equal(found.tree.rest[kept[0]], moved_to[2])
+
+
+def test_a_link_that_is_not_found_by_itself_is_found_as_the_mirror_image_of_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    body, before = arms()
+    by_itself, asked_of = linked_parts.likeliest_link, []
+
+    def once(between: Between, joint: Floats, chosen: RigidLinksSettings) -> RigidLink:
+        asked_of.append(joint)
+        link = by_itself(between, joint, chosen)
+        return link if len(asked_of) == 1 else link._replace(deviation=np.inf)
+
+    begun, from_there = list[Floats](), linked_parts.rigid_link
+
+    def listening(between: Between, expected: Floats, *of: float) -> RigidLink:
+        begun.append(expected)
+        return from_there(between, expected, *of)
+
+    monkeypatch.setattr(linked_parts, "likeliest_link", once)
+    monkeypatch.setattr(linked_parts, "rigid_link", listening)
+    after = asked(body, before).tree
+    assert (len(asked_of), len(begun)) == (3, 2)
+    assert after.parents.tolist() == [-1, 0, 1, 0, 3, 0, 5]
+    assert off(body, after, [1, 2, 3, 4, 5, 6]).max() < 0.6
+    others = np.argsort(np.linalg.norm(body.joints[4:] - asked_of[0], axis=1))[1:]
+    for k in others:
+        assert min(np.linalg.norm(two - body.joints[[1 + k, 4 + k]], axis=1).max() for two in begun) < 3.0
