@@ -19,8 +19,10 @@ from kinetree.tasks.numerics.structure.joint_partners import RootedParts, joints
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import MIDWAY, Dropped
-from kinetree.tasks.numerics.structure.shown_joints import SurfaceEvidence, with_end_joints, without_joint
+from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
 from kinetree.tasks.numerics.structure.skinning import skinning
+from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
+from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 
 def test_a_trunk_that_bends_at_two_places_is_three() -> None:
@@ -72,7 +74,7 @@ def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside
 
 
 def test_joint_that_the_first_rings_miss_is_shown_by_closer_ones(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(numerics, "end_rings", lambda *of: [])
+    monkeypatch.setattr(numerics, "all_end_rings", lambda *of: [])
     _, after = of_bent_trunk((0.0,), first_rings=False)
     (new,) = after.shown
     np.testing.assert_allclose(after.rest[new], 0.0, atol=0.4)
@@ -267,9 +269,8 @@ def test_without_two_pairs_of_limbs_no_joint_gives_way(monkeypatch: pytest.Monke
 
 def without(body: MovingSurface, tree: FirstTree, joint: int, confidence: np.ndarray | None = None) -> FirstTree:
     ones = np.ones(body.x.shape[:2])
-    return without_joint(
-        body, tree, joint, SurfaceEvidence(lambda frame: None, ones if confidence is None else confidence, 0.002)
-    )
+    evidence = SurfaceEvidence(lambda frame: None, ones if confidence is None else confidence, 0.002)
+    return without_joint(body, tree, joint, evidence, MIDWAY)
 
 
 def test_two_parts_without_their_joint_are_one_that_moves_as_that_above_and_all_else_stays() -> None:

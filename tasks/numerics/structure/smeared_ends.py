@@ -1,0 +1,44 @@
+"""Last joints of limbs that an alignment smears: the frames' surfaces say where they are, if asked without them (ours).
+
+An alignment spreads the turn of a ball of the foot over the foot, so that a cut has it anywhere up to the ankle. A ring keeps a
+distance from joints that are there, so that it does not show the true one then, or shows it as one more.
+"""
+
+import numpy as np
+
+from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings, end_joints, judged_runs
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.pruning import SMEARED
+from kinetree.tasks.numerics.structure.surface_evidence import KnownFits, SurfaceEvidence, all_end_rings, of_mirrored_limbs
+from kinetree.tasks.numerics.structure.without_joint import without_joint
+
+CLOSE = 4.5
+"""Distance of a limb's last joint from the one before, in radii of its border, below which surfaces are asked without it."""
+
+
+def without_smeared_ends(
+    body: MovingSurface, tree: FirstTree, known: KnownFits, pairs: LimbPairs, evidence: SurfaceEvidence
+) -> FirstTree:
+    """The tree without the last joints of limbs that lie close to the joint before, where surfaces show one without them.
+
+    known : has the fits of all rings that were asked afterwards
+    """
+    chosen = EndJointsSettings()
+    runs = judged_runs(len(body.x), body.takes, chosen)
+    for vertex in [int(np.flatnonzero(tree.label == k)[0]) for k in _close_ends(tree, pairs)]:
+        one = without_joint(body, tree, int(tree.label[vertex]), evidence, SMEARED)
+        part, frames = int(one.label[vertex]), evidence.frames(body, one)
+        rings = [ring for ring in all_end_rings(body, one, pairs) if ring.cut.part == part]
+        if end_joints(frames, rings, known.laid(frames, runs, rings), body.takes, [part], chosen):
+            tree = one
+    return tree
+
+
+def _close_ends(tree: FirstTree, pairs: LimbPairs) -> list[int]:
+    """Last parts of limbs with a mirror image whose joint lies close to the one before, which carries nothing else."""
+    apart = np.linalg.norm(tree.rest - tree.rest[tree.parents], axis=1)
+    carried = np.bincount(tree.parents[1:], minlength=len(tree.parents))
+    is_last = (carried == 0) & (carried[tree.parents] == 1) & (tree.parents > 0)
+    return np.flatnonzero(is_last & of_mirrored_limbs(tree, pairs) & (apart < CLOSE * tree.radius)).tolist()
