@@ -14,8 +14,10 @@ from kinetree.tasks.numerics.structure.pruning import SMEARED
 from kinetree.tasks.numerics.structure.surface_evidence import KnownFits, SurfaceEvidence, all_end_rings, of_mirrored_limbs
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
-CLOSE = 4.5
-"""Distance of a limb's last joint from the one before, in radii of its border, below which surfaces are asked without it."""
+CLOSE = 3.1
+"""Distance of a limb's last joint from the one before, in radii of its border, below which surfaces are asked without it.
+Rings take the place of balls of feet that lie at 1.3 to 3 radii; true balls are at 2.7 to 3.9. With 4.5 three paws come nearer
+too, but an elbow beyond a slice of the shoulder goes astray."""
 
 
 def without_smeared_ends(
