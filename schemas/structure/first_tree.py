@@ -8,7 +8,7 @@ from kinetree.schemas.dims import END, FRAME, JOINT, PAIR, PART, ROW, VERTEX, XY
 Drop = tuple[int, Literal["flesh", "still", "sliding", "unevident", "unpaired", "alone", "midway", "smeared"]]
 """A part that was dropped, and why: flesh around a joint, turns too little, drifts more than it turns, the frames show no
 joint, the mirror image of its limb has none there, no other cut has it and it is not needed, its joint lay midway between two
-that the frames show, or, at the end of a limb, before the one that they show."""
+that the frames show, or, at the end of a limb, close to the joint before, where they show another without it."""
 
 
 class JointTree(Artifact):

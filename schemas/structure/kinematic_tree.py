@@ -42,7 +42,8 @@ class HiddenBonesParams(Params):
     """Which bones no cut can find."""
 
     hidden_bones: bool = True
-    """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed."""
+    """Whether bones under skin that is nowhere rigid, as in short necks, are looked for where every vertex was followed, and
+    bones that their length alone shows, as between pelvis and thigh."""
 
 
 class CutJointsParams(HiddenBonesParams, PruningParams):

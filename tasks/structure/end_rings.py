@@ -13,8 +13,8 @@ from kinetree.schemas.structure.agreed_tree import AgreedTree
 from kinetree.schemas.structure.end_rings import EndRings
 from kinetree.schemas.topology.leaves import Leaves
 from kinetree.tasks.numerics.structure import end_rings as numerics
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs
 from kinetree.tasks.numerics.structure.limb_pairs import limb_pairs
+from kinetree.tasks.numerics.structure.surface_evidence import all_end_rings
 from kinetree.tasks.structure.arguments.aligned_body import tips_of
 from kinetree.tasks.structure.arguments.joint_tree import restored
 from kinetree.tasks.structure.arguments.surfaces import area_of, prepared
@@ -32,8 +32,7 @@ def end_rings(
     V, F, area = area_of(reference)
     tree, frame = restored(agreed_tree), np.array([agreed_tree.frames.index(f) for f in mesh])
     pairs = limb_pairs(V, F, tips_of(reference, leaves))
-    inside = in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
-    rings = numerics.end_rings(V, F, area, tree, inside, pairs)
+    rings = all_end_rings(V, F, area, tree, pairs)
     confidence = np.stack([a.confidence for a in alignment.values()], dtype=np.float64)
     surface = cache(prepared(mesh, agreed_tree.frames, float(np.sqrt(area.sum()))))
     fits: list[numerics.Fits] = [{} for _ in rings]

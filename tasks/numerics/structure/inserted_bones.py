@@ -31,7 +31,7 @@ def inserted_bones(
     for _ in range(chosen.generations - 1):
         if not bones:
             break
-        own = Rows.of(len(found.rest), np.array(list(bones))).own.tolist()
+        own = InsertedRows.of(len(found.rest), np.array(list(bones))).own.tolist()
         found = _extended(body, found, bones, noise)
         bones = _one_each(own, _hidden_at([k for o in own for k in (o, o + 1)], body, found, chosen))
     return _extended(body, found, bones, noise) if bones else found
@@ -61,7 +61,7 @@ def _extended(body: MovingSurface, found: TreeJoints, bones: dict[int, HiddenBon
     """The tree in its new order: every bone stands right before the part below it."""
     old, parts, new = found.left.part_tree, found.left.parts, list(bones.values())
     below = np.array(list(bones))
-    rows = Rows.of(len(old.tree.order), below)
+    rows = InsertedRows.of(len(old.tree.order), below)
     tree = _extended_tree(old, rows)
     label = rows.place[found.label]
     for k, bone in zip(rows.own, new, strict=True):
@@ -86,7 +86,7 @@ def _extended(body: MovingSurface, found: TreeJoints, bones: dict[int, HiddenBon
     return TreeJoints(left, found.used, found.part, label, W, R, t, rest, off, both)
 
 
-class Rows(NamedTuple):
+class InsertedRows(NamedTuple):
     """Where rows of the old tree and of the bones stand in the new one.
 
     place : (part,) of every old part
@@ -97,7 +97,7 @@ class Rows(NamedTuple):
     own: Ints
 
     @classmethod
-    def of(cls, parts: int, below: Ints) -> "Rows":
+    def of(cls, parts: int, below: Ints) -> "InsertedRows":
         """Of a tree of so many parts; below (bone,) the part below each bone, ascending."""
         place = np.arange(parts) + np.searchsorted(below, np.arange(parts), side="right")
         return cls(place, place[below] - 1)
@@ -115,7 +115,7 @@ class Rows(NamedTuple):
         return out
 
 
-def _extended_tree(old: PartTree, rows: Rows) -> RootedTree:
+def _extended_tree(old: PartTree, rows: InsertedRows) -> RootedTree:
     """Bones are numbered after all parts, their borders after all borders: with the part above, then with that below."""
     count, bones = len(old.tree.order), np.arange(len(rows.own))
     parents, border, order = (np.full(count + len(bones), -1) for _ in range(3))

@@ -24,7 +24,7 @@ FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE, MIDWAY, SMEARED = (
 )  # fmt: skip
 """Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
 flesh that the mirror image of its limb lacks, or that no other cut has, and (`shown_joints`) because its joint lay midway
-between two that the frames show, or, at the end of a limb, before the one that they show."""
+between two that the frames show, or, at the end of a limb, close to the joint before, where they show another without it."""
 
 NO_PART = -1
 """`Pruned.origin` of a part that the cut does not have: a hidden bone, or a limb that was cut off another or off the trunk."""

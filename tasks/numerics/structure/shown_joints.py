@@ -14,14 +14,20 @@ from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSett
 from kinetree.tasks.numerics.structure.end_rings import Fits, closer_rings, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts, joints_between_pairs
+from kinetree.tasks.numerics.structure.joint_partners import joints_between_pairs
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import MIDWAY
 from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.smeared_ends import without_smeared_ends
-from kinetree.tasks.numerics.structure.surface_evidence import KnownFits, SurfaceEvidence, all_end_rings, of_mirrored_limbs
+from kinetree.tasks.numerics.structure.surface_evidence import (
+    KnownFits,
+    SurfaceEvidence,
+    all_end_rings,
+    of_mirrored_limbs,
+    rooted,
+)
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 
@@ -50,11 +56,14 @@ def with_end_joints(
     noise      : see `extended_tree`
     """
     pairs, evidence = limb_pairs(body.V, body.F, leaves), SurfaceEvidence(surface, confidence, noise)
-    known = KnownFits.of(all_end_rings(body, tree, pairs), fits)
-    tree = without_smeared_ends(body, tree, known, pairs, evidence)
-    extended = _with_shown_joints(body, tree, known, pairs, evidence)
-    single = joints_between_pairs(_rooted(tree), pairs)
-    if len(single) != 1 or len(joints_between_pairs(_rooted(extended), pairs)) != 1:
+    known = KnownFits.of(all_end_rings(body.V, body.F, body.area, tree, pairs), fits)
+    left = without_smeared_ends(body, tree, known, pairs, evidence)
+    extended = _with_shown_joints(body, left, known, pairs, evidence)
+    if len(extended.parents) < len(tree.parents):  # asked with all others, the surfaces show one joint less
+        left, extended = tree, _with_shown_joints(body, tree, known, pairs, evidence)
+    tree = left
+    single = joints_between_pairs(rooted(tree), pairs)
+    if len(single) != 1 or len(joints_between_pairs(rooted(extended), pairs)) != 1:
         return extended
     divided = _with_trunk_divided_anew(body, tree, int(single[0]), pairs, evidence)
     if divided is None:
@@ -74,7 +83,7 @@ def _with_trunk_divided_anew(
     rings = [ring for ring in rings if ring.cut.part == one.label[own[0]]]
     found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=EndJointsSettings())
     after = _with_closer_joints(body, one, found, own, pairs, evidence, stays=True)
-    trunk = joints_between_pairs(_rooted(after), pairs)
+    trunk = joints_between_pairs(rooted(after), pairs)
     return _with_ends_of_trunk_as_aligned(body, after, trunk, evidence) if len(trunk) > 1 else None
 
 
@@ -113,7 +122,7 @@ def _with_shown_joints(
     part that one joint divides may hold two.
     """
     chosen, mirrored = EndJointsSettings(), of_mirrored_limbs(tree, pairs)
-    rings, frames = all_end_rings(body, tree, pairs), evidence.frames(body, tree)
+    rings, frames = all_end_rings(body.V, body.F, body.area, tree, pairs), evidence.frames(body, tree)
     fits = known.laid(frames, judged_runs(len(body.x), body.takes, chosen), rings)
     ends = np.unique(tree.label[pairs.tip])
     found = end_joints(frames, rings, fits, body.takes, ends[mirrored[ends]].tolist(), chosen)
@@ -159,8 +168,3 @@ def _with_neighbours(tree: FirstTree, parts: Ints) -> Collection[int]:
     """Parts, those that they hang on, and those that hang on them."""
     beside = np.isin(tree.parents, parts)
     return {*parts.tolist(), *tree.parents[parts].tolist(), *np.flatnonzero(beside).tolist()} - {-1}
-
-
-def _rooted(tree: FirstTree) -> RootedParts:
-    """Its parts alone."""
-    return RootedParts(tree.label, tree.parents, tree.radius)

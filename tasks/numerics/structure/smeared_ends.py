@@ -32,7 +32,7 @@ def without_smeared_ends(
     for vertex in [int(np.flatnonzero(tree.label == k)[0]) for k in _close_ends(tree, pairs)]:
         one = without_joint(body, tree, int(tree.label[vertex]), evidence, SMEARED)
         part, frames = int(one.label[vertex]), evidence.frames(body, one)
-        rings = [ring for ring in all_end_rings(body, one, pairs) if ring.cut.part == part]
+        rings = [ring for ring in all_end_rings(body.V, body.F, body.area, one, pairs) if ring.cut.part == part]
         if end_joints(frames, rings, known.laid(frames, runs, rings), body.takes, [part], chosen):
             tree = one
     return tree

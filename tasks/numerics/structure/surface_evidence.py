@@ -44,21 +44,26 @@ class KnownFits(NamedTuple):
         return cls({_place(ring): one for ring, one in zip(rings, fits, strict=True)})
 
     def laid(self, frames: EndFrames, runs: Sequence[Ints], rings: Sequence[EndRing]) -> list[Fits]:
-        """By ring; those that are not known are laid, and known then."""
+        """By ring, each its own; those that are not known are laid, and known then."""
         new = [ring for ring in rings if _place(ring) not in self.fits]
         self.fits.update(zip(map(_place, new), laid_in_runs(frames, runs, new), strict=True))
-        return [self.fits[_place(ring)] for ring in rings]
+        return [dict(self.fits[_place(ring)]) for ring in rings]
 
 
 def _place(ring: EndRing) -> tuple[bytes, bytes]:
     return ring.cut.own.tobytes(), ring.cut.centre.tobytes()
 
 
-def all_end_rings(body: MovingSurface, tree: FirstTree, pairs: LimbPairs) -> list[EndRing]:
-    """See `end_rings`."""
-    return end_rings(body.V, body.F, body.area, tree, of_mirrored_limbs(tree, pairs), pairs)
+def all_end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, pairs: LimbPairs) -> list[EndRing]:
+    """All rings of a tree, see `end_rings`."""
+    return end_rings(V, F, area, tree, of_mirrored_limbs(tree, pairs), pairs)
 
 
 def of_mirrored_limbs(tree: FirstTree, pairs: LimbPairs) -> Flags:
     """(part,) whether a part is of a limb that has a mirror image."""
-    return in_mirrored_limbs(RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    return in_mirrored_limbs(rooted(tree), pairs)
+
+
+def rooted(tree: FirstTree) -> RootedParts:
+    """Its parts alone."""
+    return RootedParts(tree.label, tree.parents, tree.radius)

@@ -31,7 +31,7 @@ REASONS = {
     "unpaired": "not in the mirrored limb",
     "alone": "joint of this cut alone",
     "midway": "one joint for two",
-    "smeared": "smeared; its joint is farther out",
+    "smeared": "smeared; the frames show another",
 }
 """Why parts were dropped, in words for people."""
 TITLE = 60

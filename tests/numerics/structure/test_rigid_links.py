@@ -61,6 +61,12 @@ def test_frames_beyond_those_that_err_alike_hold_the_ends_more_firmly() -> None:
     assert firm < 0.9 * loose
 
 
+def test_few_frames_hold_the_ends_no_less_firmly_than_as_many_as_err_alike() -> None:
+    expected, there = ENDS + 0.3, between(*linked(frames=8, noise=0.02), noise=0.5)
+    few, as_many = (rigid_link(there, expected, 1.0, alike).ends for alike in (1000.0, 8.0))
+    np.testing.assert_allclose(few, as_many)
+
+
 def test_of_one_joint_both_ends_are_found_though_the_search_begins_at_neither() -> None:
     link = likeliest_link(between(*linked()), ENDS.mean(axis=0), RigidLinksSettings())
     np.testing.assert_allclose(link.ends, ENDS, atol=0.02)

@@ -10,7 +10,7 @@ from smeared import END, Frames, turning
 from smeared import moving as surface_of
 
 from kinetree.tasks.numerics.geometry.rigid_fit import rigid_motion
-from kinetree.tasks.numerics.structure import smeared_ends
+from kinetree.tasks.numerics.structure import shown_joints, smeared_ends
 from kinetree.tasks.numerics.structure.end_joints import judged_runs
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS
@@ -20,6 +20,7 @@ from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
 from kinetree.tasks.numerics.structure.smeared_ends import without_smeared_ends
 from kinetree.tasks.numerics.structure.surface_evidence import KnownFits, SurfaceEvidence, all_end_rings
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
+from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 BEFORE = 1.3
 """Height at which a cut has the joint that lies at END."""
@@ -38,9 +39,12 @@ def _all_limbs_have_mirror_images(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(smeared_ends, "of_mirrored_limbs", lambda tree, _: np.ones(len(tree.parents), np.bool_))
 
 
-def smeared(height: float = BEFORE, degrees: float = 25.0) -> Smeared:
-    """A tube whose cut has its second joint at a height before the true one, with motions of vertices that are spread there."""
-    turn = turning(degrees)
+def smeared(height: float = BEFORE, degrees: float = 25.0, times: int = 1) -> Smeared:
+    """A tube whose cut has its second joint at a height before the true one, with motions of vertices that are spread there.
+
+    times : how often it moves as it does in 24 frames
+    """
+    turn = np.concatenate([turning(degrees)] * times)
     body, half = chain((0.0, END), turn, along=60), chain((0.0, height), turn, blend=1.5, along=60)
     label = np.searchsorted(np.array([0.0, height]), body.V[:, 2])
     V = np.broadcast_to(body.V, half.x.shape)
@@ -58,7 +62,7 @@ def asked(of: Smeared, known: KnownFits | None = None) -> FirstTree:
 
 
 def with_joints(of: Smeared) -> FirstTree:
-    rings = all_end_rings(of.body, of.tree, NO_PAIRS)
+    rings = all_end_rings(of.body.V, of.body.F, of.body.area, of.tree, NO_PAIRS)
     fits = KnownFits({}).laid(of.evidence.frames(of.body, of.tree), judged_runs(len(of.body.x), None), rings)
     tips = np.array([of.body.V[:, 2].argmin(), of.body.V[:, 2].argmax()])
     return with_end_joints(of.body, of.tree, tips, fits, of.evidence.surface, of.evidence.confidence, 0.002)
@@ -79,7 +83,7 @@ def test_what_was_asked_is_known() -> None:
     of, known = smeared(), KnownFits({})
     after = asked(of, known)
     assert after.parents.tolist() == [-1, 0]
-    rings = all_end_rings(of.body, after, NO_PAIRS)
+    rings = all_end_rings(of.body.V, of.body.F, of.body.area, after, NO_PAIRS)
     assert rings
     before = dict(known.fits)
     known.laid(of.evidence.frames(of.body, after), judged_runs(len(of.body.x), None), rings)
@@ -104,11 +108,60 @@ def test_it_stays_on_a_limb_without_a_mirror_image(monkeypatch: pytest.MonkeyPat
     assert asked(of) is of.tree
 
 
-def test_a_joint_on_the_root_or_beside_another_stays() -> None:
+def test_what_is_known_stays_that_of_the_frames_that_are_judged() -> None:
+    """Of 72 frames 52; a joint that shows is laid in all of them."""
+    of, known = smeared(times=3), KnownFits({})
+    assert len(asked(of, known).parents) == 2
+    judged = np.concatenate(judged_runs(72, None))
+    assert len(judged) < 72
+    assert known.fits
+    assert all(set(fits) <= set(judged.tolist()) for fits in known.fits.values())
+
+
+@pytest.mark.parametrize(
+    ("parents", "close"), [([-1, 0], []), ([-1, 0, 0], []), ([-1, 0, 1], [2]), ([-1, 0, 1, 1], []), ([-1, 0, 1, 2], [3])]
+)
+def test_which_joints_are_asked_for(parents: list[int], close: list[int]) -> None:
+    """The last of a limb, on a part that carries nothing else and is not the root."""
+    tree, count = smeared().tree, len(parents)
+    heights, radius = np.arange(count)[:, None] * [0.0, 0.0, 1.0], np.ones(count)
+    assert smeared_ends._close_ends(tree._replace(parents=np.array(parents), rest=heights, radius=radius), NO_PAIRS) == close
+
+
+def test_both_limbs_may_lose_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts are numbered anew once one is gone."""
+    of, count = smeared(), 5
+    label = np.digitize(of.body.V[:, 2], [-2.5, -1.0, 1.0, 2.5])[:, None] == [2, 3, 4, 1, 0]
+    rest = np.array([0.0, 1.0, 2.5, -1.0, -2.5])[:, None] * [0.0, 0.0, 1.0]
+    frames = len(of.body.x)
+    tree = of.tree._replace(
+        parents=np.array([-1, 0, 1, 0, 3]),
+        place=np.arange(count),
+        label=label.argmax(axis=1),
+        rest=rest,
+        radius=np.ones(count),
+        R=np.broadcast_to(np.eye(3), (frames, count, 3, 3)),
+        t=np.zeros((frames, count, 3)),
+        certain_share=np.ones((frames, count)),
+        drift=np.zeros(count),
+        unexplained=np.zeros((frames, count)),
+    )
+    parts = list[int]()
+    monkeypatch.setattr(smeared_ends, "end_joints", lambda frames, rings, fits, takes, own, chosen: parts.extend(own) or [1])
+    after = without_smeared_ends(of.body, tree, KnownFits({}), NO_PAIRS, of.evidence)
+    assert parts == [1, 2]
+    assert after.parents.tolist() == [-1, 0, 0]
+    assert after.place.tolist() == [0, 1, -1, 2, -1]
+    np.testing.assert_array_equal(after.label, np.array([0, 1, 1, 2, 2])[tree.label])
+
+
+def test_the_joint_stays_if_the_surfaces_show_one_less_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     of = smeared()
-    for parents in ([-1, 0, 0], [-1, 0, 1, 1]):
-        tree = of.tree._replace(parents=np.array(parents))
-        if len(parents) > 3:
-            tree = tree._replace(rest=tree.rest[[0, 1, 2, 2]], radius=tree.radius[[0, 1, 2, 2]])
-        assert smeared_ends._close_ends(tree, NO_PAIRS) == []
-    assert smeared_ends._close_ends(of.tree, NO_PAIRS) == [2]
+    gone = without_joint(of.body, of.tree, 2, of.evidence, SMEARED)
+    monkeypatch.setattr(shown_joints, "without_smeared_ends", lambda *of: gone)
+    assert with_joints(of).parents.tolist() == [-1, 0, 1]
+    monkeypatch.setattr(shown_joints, "end_joints", lambda *of, **more: [])
+    after = with_joints(of)
+    assert after.parents.tolist() == [-1, 0, 1]
+    np.testing.assert_array_equal(after.rest, of.tree.rest)
+    assert after.graph.dropped == of.tree.graph.dropped
