@@ -20,7 +20,7 @@ from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
 from kinetree.tasks.numerics.structure.pruning import MIDWAY
 from kinetree.tasks.numerics.structure.skinning import skinning
-from kinetree.tasks.numerics.structure.smeared_ends import without_smeared_ends
+from kinetree.tasks.numerics.structure.smeared_ends import are_replaced, without_smeared_ends
 from kinetree.tasks.numerics.structure.surface_evidence import (
     KnownFits,
     SurfaceEvidence,
@@ -59,7 +59,7 @@ def with_end_joints(
     known = KnownFits.of(all_end_rings(body.V, body.F, body.area, tree, pairs), fits)
     left = without_smeared_ends(body, tree, known, pairs, evidence)
     extended = _with_shown_joints(body, left, known, pairs, evidence)
-    if len(extended.parents) < len(tree.parents):  # asked with all others, the surfaces show one joint less
+    if not are_replaced(tree, left, extended):
         left, extended = tree, _with_shown_joints(body, tree, known, pairs, evidence)
     tree = left
     single = joints_between_pairs(rooted(tree), pairs)

@@ -38,6 +38,16 @@ def without_smeared_ends(
     return tree
 
 
+def are_replaced(tree: FirstTree, left: FirstTree, extended: FirstTree) -> bool:
+    """Whether surfaces that are asked for all joints at once show one for each that went: what was two parts is two again.
+
+    left     : the tree without these joints
+    extended : the same with those that the surfaces show
+    """
+    gone = tree.place[(tree.place >= 0) & (left.place < 0)].tolist()
+    return all(len(np.unique(extended.label[np.isin(tree.label, [k, tree.parents[k]])])) > 1 for k in gone)
+
+
 def _close_ends(tree: FirstTree, pairs: LimbPairs) -> list[int]:
     """Last parts of limbs with a mirror image whose joint lies close to the one before, which carries nothing else."""
     apart = np.linalg.norm(tree.rest - tree.rest[tree.parents], axis=1)

@@ -165,3 +165,13 @@ def test_the_joint_stays_if_the_surfaces_show_one_less_in_the_end(monkeypatch: p
     assert after.parents.tolist() == [-1, 0, 1]
     np.testing.assert_array_equal(after.rest, of.tree.rest)
     assert after.graph.dropped == of.tree.graph.dropped
+
+
+def test_a_joint_that_shows_elsewhere_is_none_in_its_place() -> None:
+    of = smeared()
+    left, after = asked(of), with_joints(of)
+    elsewhere = after._replace(label=np.where(of.body.V[:, 2] < -2.0, 2, left.label))
+    assert len(elsewhere.parents) == len(of.tree.parents)
+    assert smeared_ends.are_replaced(of.tree, left, after)
+    assert not smeared_ends.are_replaced(of.tree, left, elsewhere)
+    assert smeared_ends.are_replaced(of.tree, of.tree, of.tree)
