@@ -1,10 +1,11 @@
-"""Slices of flesh at the inner ends of limbs of a pair, which their mirror images do not tell from bones (ours).
+"""Slices of flesh in limbs of a pair, which their mirror images do not tell from bones (ours).
 
 An arm that swings far pulls the flesh of chest and shoulder along: it turns by a share of what the arm turns by, on both sides
 alike, and becomes a part of its own. The arm's joint is then two, one on either side of the true one. Between two bones flesh
-is a mixture of both; a bone of its own is none.
+is a mixture of both; a bone of its own is none. Farther out a slice is clearer: no pelvis and no shoulder blade moves there.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,13 @@ class MirroredSlicesSettings(NamedTuple):
     apart: SliceLimits = SliceLimits(3.9, 2.5, 5.2)
     """Of parts that do not. Slices beside shoulders have lengths of 1.1 to 3.8, at most 2.4 times the other's, and mixtures of
     2.2 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
+    length_within: float = 2.6
+    """Length of a part farther out, at most, in radii. Of people 545 to 569, 1, 8, 12, humans, four-legged and random trees 0
+    to 9 and of wave, dance and wolf (every fourth frame), two slices have 0.6 and 2.6, and mixtures of 2.2 and 2.4. Of true
+    parts feet are the shortest, 1.3 and more, with mixtures of 4.0 and more; one has 2.4, and surfaces show the ball of that
+    foot (`end_joints`). All others are 3.6 and more long."""
+    mixture_within: float = 3.0
+    """Mixture of a part farther out, at most."""
     least_length: float = 1.2
     """Length of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
     of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
@@ -92,16 +100,34 @@ def mirrored_slices(
     chosen, parts = settings or MirroredSlicesSettings(), RootedParts(tree.label, tree.parents, tree.radius)
     found = dict[int, Slice]()
     for limbs in mirrored_limbs(body.F, parts, pairs, paired):
+        for limb in limbs[:2]:
+            found |= {each.part: each for each in _within(body, tree, limb, confidence, chosen)}
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
         touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
         limits = chosen.touching if touch else chosen.apart
         for short in (_both(tree, limbs, limits, chosen), [] if touch else _one(tree, limbs, limits, chosen)):
-            slices = [_slice(body, tree, limb) for limb in short]
+            slices = [_slice(body, tree, *limb.part[-2:].tolist()) for limb in short]
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
                 found |= {each.part: each for each in slices}
                 break
     return [found[part] for part in sorted(found)]
+
+
+def _within(
+    body: MovingSurface, tree: FirstTree, limb: Limb, confidence: Floats, chosen: MirroredSlicesSettings
+) -> Iterator[Slice]:
+    """The parts of a limb that are slices, its innermost and its last one left out.
+
+    Beside another short part it is unknown which of the two is one.
+    """
+    rows = limb.part.tolist()
+    for below, part, above in zip(rows, rows[1:], rows[2:], strict=False):
+        short = [_radii_long(tree, *two) <= chosen.length_within for two in ((below, part), (part, above))]
+        if short == [True, False]:
+            one = _slice(body, tree, below, part)
+            if _mixture(body, tree, one, confidence) <= chosen.mixture_within:
+                yield one
 
 
 def _both(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: MirroredSlicesSettings) -> list[Limb]:
@@ -122,17 +148,20 @@ def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: Mir
 
 
 def _length(tree: FirstTree, limb: Limb) -> float:
-    """Of a limb's innermost part, in radii; infinite where it is the last part too, or carries two parts."""
-    if len(limb.part) < 2 or (tree.parents == limb.part[-1]).sum() != 1:
+    """Of a limb's innermost part, in radii; infinite where it is the last part too."""
+    return np.inf if len(limb.part) < 2 else _radii_long(tree, *limb.part[-2:].tolist())
+
+
+def _radii_long(tree: FirstTree, below: int, part: int) -> float:
+    """Length of a part, from its joint to that of the part below, in radii; infinite where it carries two parts."""
+    if (tree.parents == part).sum() != 1:
         return np.inf
-    below, part = limb.part[-2:]
     radius = max(float(min(tree.radius[part], tree.radius[below])), float(np.finfo(float).tiny))
     return float(np.linalg.norm(tree.rest[part] - tree.rest[below]) / radius)
 
 
-def _slice(body: MovingSurface, tree: FirstTree, limb: Limb) -> Slice:
-    """A limb's innermost part."""
-    below, part = limb.part[-2:].tolist()
+def _slice(body: MovingSurface, tree: FirstTree, below: int, part: int) -> Slice:
+    """A part that may be a slice."""
     to_inner, to_outer = (body.V - tree.rest[k] for k in (part, below))
     inner, outer = (np.linalg.norm(away, axis=1) for away in (to_inner, to_outer))
     is_before = to_inner @ (tree.rest[below] - tree.rest[part]) <= 0.0

@@ -10,6 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.close_joints import are_as_good, close_joints
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import Fits, closer_rings, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
@@ -18,7 +19,7 @@ from kinetree.tasks.numerics.structure.joint_partners import joints_between_pair
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
-from kinetree.tasks.numerics.structure.pruning import MIDWAY
+from kinetree.tasks.numerics.structure.pruning import MIDWAY, SMEARED
 from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.smeared_ends import are_replaced, without_smeared_ends
 from kinetree.tasks.numerics.structure.surface_evidence import (
@@ -64,12 +65,24 @@ def with_end_joints(
     tree = left
     single = joints_between_pairs(rooted(tree), pairs)
     if len(single) != 1 or len(joints_between_pairs(rooted(extended), pairs)) != 1:
-        return extended
+        return _without_close_joints(body, tree, extended, pairs, evidence)
     divided = _with_trunk_divided_anew(body, tree, int(single[0]), pairs, evidence)
     if divided is None:
         return extended
     divided = _with_shown_joints(divided.with_ends(body), divided, KnownFits({}), pairs, evidence)
     return divided if len(divided.parents) > len(extended.parents) else extended
+
+
+def _without_close_joints(
+    body: MovingSurface, tree: FirstTree, extended: FirstTree, pairs: LimbPairs, evidence: SurfaceEvidence
+) -> FirstTree:
+    """The extended tree without joints of the trunk that those which surfaces show do as well without (`close_joints`)."""
+    for joint in close_joints(tree, extended, pairs):
+        one = without_joint(body, tree, joint, evidence, SMEARED)
+        without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
+        if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
+            return _without_close_joints(body, one, without, pairs, evidence)
+    return extended
 
 
 def _with_trunk_divided_anew(

@@ -346,3 +346,30 @@ def test_agreed_tree_has_none_where_vertices_were_aligned() -> None:
 def test_tree_without_slices_stays_as_it_is() -> None:
     body, tree = seen(is_flesh=False)
     assert agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE) is tree
+
+
+@pytest.mark.parametrize(
+    ("thigh", "flesh", "mixture", "count"),
+    [(2.5, 2.7, 2.9, 2), (2.7, 2.7, 2.9, 0), (2.5, 2.5, 2.9, 0), (2.5, 2.7, 3.1, 0), (2.5, np.inf, 2.9, 2)],
+)
+def test_slices_farther_out_lie_beside_long_parts(
+    thigh: float, flesh: float, mixture: float, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The thigh as a slice between the flesh about the hip and the shank."""
+    body, tree = seen()
+    lengths = {int(k): flesh if tree.parents[k] == 0 else thigh for k in range(1, len(tree.parents))}
+    monkeypatch.setattr(numerics, "_radii_long", lambda tree, below, part: lengths[part])
+    monkeypatch.setattr(numerics, "_mixture", lambda *of: mixture)
+    slices = found_in((body, tree), limits(length=0.0))
+    assert len(slices) == count
+    for one in slices:
+        assert tree.parents[[one.below, one.part, one.above]].tolist() == [one.part, one.above, 0]
+
+
+def test_a_slice_farther_out_is_shared_out_as_others_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    body, tree = seen()
+    monkeypatch.setattr(numerics, "_radii_long", lambda tree, below, part: 9.0 if tree.parents[part] == 0 else 1.0)
+    monkeypatch.setattr(numerics, "_mixture", lambda *of: 1.0)
+    left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    assert len(left.parents) == len(tree.parents) - 2
+    np.testing.assert_array_equal(left.place < 0, tree.parents[tree.parents] == 0)
