@@ -63,10 +63,10 @@ def agreed_tree(
 ) -> AgreedTree:
     """Chooses the cut whose tree is used, and drops its parts with a joint that no other of at least two cuts has.
 
-    The part without which joints drift least goes first. It goes if fewer joints are this cut's alone then, so that as many as
-    before are those of other cuts, if none drifts more (`RISE`), if no other part is weak then, and if no two limbs that are
-    mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too (`mirrored_slices`), and
-    flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
+    The part without which joints drift least goes first, with those that are weak then. They go if so many joints fewer are
+    this cut's alone then, so that as many as before are those of other cuts, if none drifts more (`RISE`), and if no two limbs
+    that are mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too
+    (`mirrored_slices`), and flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -215,17 +215,18 @@ def _without_one(
     others: Sequence[Floats],
     settings: KinematicTreeSettings,
 ) -> TreeJoints | None:
-    """The tree without the part that is needed least; None where all are needed."""
+    """The tree without the part that is needed least, and without those that go with it; None where all are needed."""
     tree = joints.left.part_tree.tree
     shared = _shared_joints(joints, others, body.size)
     sides = {side for joint in np.flatnonzero(~shared) + 1 for side in (int(joint), int(tree.parents[joint]))}
     best: _Without | None = None
     for side in sorted(side for side in sides if (tree.parents == side).sum() + (side > 0) > 1):
         left = pruned_without(body, joints.left, int(tree.order[side]), ALONE, leaves, pairs, settings.pruning)
-        if len(left.dropped) > len(joints.left.dropped) + 1 or _in_limbs(left, pairs) < _in_limbs(joints.left, pairs) - 1:
+        if _in_limbs(left, pairs) < _in_limbs(joints.left, pairs) - 1:
             continue
         fewer = tree_of_parts(body, left, joints.used, joints.part, confidence, settings)
-        if (~_shared_joints(fewer, others, body.size)).sum() >= (~shared).sum():
+        gone = len(left.dropped) - len(joints.left.dropped)
+        if (~_shared_joints(fewer, others, body.size)).sum() > (~shared).sum() - gone:
             continue
         rise = _rise(joints, fewer)
         if rise <= (best.rise if best else RISE):
@@ -244,10 +245,13 @@ def _shared_joints(joints: TreeJoints, others: Sequence[Floats], size: float) ->
 
 
 def _rise(before: TreeJoints, after: TreeJoints) -> float:
-    """The largest drift of joints between parts that met in no joint before, in that of those that meet in none now."""
+    """The largest drift of joints between parts that met in no joint before, in that of those that meet in none now.
+
+    Infinite where no joint comes: what lay beyond is gone as well then.
+    """
     old, new = _between(before), _between(after)
     gone, come = [old[pair] for pair in old.keys() - new.keys()], [new[pair] for pair in new.keys() - old.keys()]
-    return float(max(come, default=0.0) / max(*gone, np.finfo(float).tiny))
+    return float(max(come, default=np.inf) / max(*gone, np.finfo(float).tiny))
 
 
 def _between(joints: TreeJoints) -> dict[frozenset[int], float]:

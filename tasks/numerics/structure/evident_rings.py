@@ -47,10 +47,13 @@ class EvidentRingsSettings(NamedTuple):
     which other joints need."""
     slice_length: float = 2.1
     """Length of the nearer piece, from joint to ring, in radii of the ring, from which on it may turn less than the piece
-    beyond turns against it. A shorter one that does is a slice of a joint that is there already, a little off. In a limb with
-    a mirror image every shorter one is a slice: necks alone are as short. Chosen on people 5, 7, 14 to 18 and 20 in three
-    takes: four such had 1.0 to 1.9, true joints with that turning 2.4 or more; in limbs with a mirror image true joints had
-    2.6 to 5.2, two false ones 1.5 and 1.7."""
+    beyond turns against it. A shorter one that does is a slice of a joint that is there already, a little off. Chosen on people
+    5, 7, 14 to 18 and 20 in three takes: four such had 1.0 to 1.9, true joints with that turning 2.4 or more."""
+    slice_length_if_mirrored: float = 2.3
+    """Length of the nearer piece, in radii, below which it is a slice in a limb with a mirror image, however much it turns:
+    necks alone are as short. On the same people true joints had 2.6 to 5.2, two false ones 1.5 and 1.7; across feet of people
+    545 to 569, 1, 8 and 12 the shortest has 2.37, and two rings across hands, of person 561 and of every fourth frame of the
+    dance, have 2.14 and 2.20."""
 
 
 def evident_rings(
@@ -75,7 +78,7 @@ def needed_score(ring: EndRing, settings: EvidentRingsSettings) -> float:
     """The score that a ring needs."""
     if ring.cut.hung:
         return settings.least_score_in_trunk
-    return settings.least_score_if_short if _is_short(ring, settings) else settings.least_score
+    return settings.least_score_if_short if _is_short(ring, settings.slice_length) else settings.least_score
 
 
 def joint_inwards(tree: FirstTree, cut: EndCut) -> int:
@@ -167,13 +170,14 @@ def _rank(ring: EndRing, shown: RingEvidence) -> float:
     return shown.score if ring.cut.hung else shown.gain
 
 
-def _is_short(ring: EndRing, chosen: EvidentRingsSettings) -> bool:
-    """Whether the piece before the ring is short."""
-    return bool(np.linalg.norm(ring.cut.centre - ring.piece.joint) < chosen.slice_length * ring.cut.radius)
+def _is_short(ring: EndRing, radii: float) -> bool:
+    """Whether the piece before the ring is shorter than that."""
+    return bool(np.linalg.norm(ring.cut.centre - ring.piece.joint) < radii * ring.cut.radius)
 
 
 def _is_joint(ring: EndRing, shown: RingEvidence, is_mirrored: bool, chosen: EvidentRingsSettings) -> bool:
     """Whether both pieces turn enough, and the nearer one is no slice of a joint that is there already."""
-    is_clear = ring.cut.apart >= chosen.least_apart if ring.cut.hung else not _is_short(ring, chosen)
+    short = chosen.slice_length_if_mirrored if is_mirrored else chosen.slice_length
+    is_clear = ring.cut.apart >= chosen.least_apart if ring.cut.hung else not _is_short(ring, short)
     is_slice = not is_clear and (bool(ring.cut.hung) or is_mirrored or shown.near < shown.far)
     return shown.far >= chosen.degrees and shown.near >= chosen.nearer and not is_slice

@@ -1,7 +1,7 @@
 """Whose tree it is, and that joints of one cut alone go if the tree needs them not."""
 
 from types import SimpleNamespace
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import pytest
@@ -13,13 +13,16 @@ from kinetree.tasks.numerics.structure import agreed_tree as numerics
 from kinetree.tasks.numerics.structure.agreed_tree import AgreedTree, agreed_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, first_tree
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
-from kinetree.tasks.numerics.structure.pruning import Dropped
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.pruning import Dropped, Pruned
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints
 
 FRAMES = 24
 HEIGHTS = (-3.0, 0.0, 2.6)
 """Of the true joints."""
 TIPS = np.zeros(0, np.int64)
+TOPMOST = 4
+"""The part beyond the last joint, in the order of a tree with a ring."""
 
 
 def body() -> Known:
@@ -163,7 +166,7 @@ def test_parts_dropped_before_stay_dropped() -> None:
     assert found.place[[4, 5]].tolist() == [-1, -1]
 
 
-def test_joint_stays_if_another_part_would_go_with_it() -> None:
+def test_joint_stays_if_what_lies_beyond_would_go_with_it() -> None:
     """Without a leaf at its end what lies beyond slides when two joints become one: true joints would be lost."""
     true = chain((-1.0, 1.0, 3.0), swings(FRAMES, 4, 15, seed=2), along=60)
     noise = 0.02 * np.random.default_rng(0).normal(size=true.t.shape)
@@ -187,6 +190,28 @@ def test_rise_is_the_largest_drift_of_new_joints_in_that_of_those_gone() -> None
     before = tree_of([-1, 0, 1, 2], [2, 0, 1, 3], [0, 1, 2, 3], [0.0, 9.0, 0.2, 0.5])
     after = tree_of([-1, 0, 1], [1, 0, 2], [0, 2, 3], [0.0, 9.0, 0.4])
     assert numerics._rise(before, after) == pytest.approx(0.4 / 0.5)
+
+
+def test_rise_is_infinite_where_no_joint_comes() -> None:
+    before, after = tree_of([-1, 0, 1], [0, 1, 2], [0, 1, 2], [0.0, 0.2, 0.5]), tree_of([-1], [0], [0], [0.0])
+    assert numerics._rise(before, after) == np.inf
+
+
+@pytest.mark.parametrize(("other_has", "goes"), [((), True), ((2,), False)])
+def test_parts_that_are_weak_without_it_go_too_if_their_joints_are_this_cuts_alone(
+    other_has: tuple[int, ...], goes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the ring another part is weak, that beyond the last joint."""
+    tree, real = ringed(0.15), numerics.pruned_without
+
+    def with_another(body: MovingSurface, joints: Pruned, part: int, *of: Any) -> Pruned:
+        less = real(body, joints, part, *of)
+        last = [k for k in range(len(less.origin)) if less.origin[k] == TOPMOST]
+        return real(body, less, last[0], *of) if last and len(less.dropped) == 1 else less
+
+    monkeypatch.setattr(numerics, "pruned_without", with_another)
+    others = [joints_at(*HEIGHTS[:2], *(HEIGHTS[k] for k in other_has))] * 2
+    assert (len(left(tree, others).parents) == len(tree.parents) - 2) == goes
 
 
 def test_joint_that_others_have_is_not_lost_for_it() -> None:

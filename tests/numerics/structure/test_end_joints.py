@@ -193,7 +193,7 @@ def test_a_short_piece_that_turns_less_than_what_is_beyond_is_a_slice_of_its_joi
 def test_a_short_piece_of_a_limb_with_a_mirror_image_is_a_slice_however_it_turns(
     slice_length: float, mirrored: tuple[int, ...], joints: int
 ) -> None:
-    settings = EndJointsSettings(EvidentRingsSettings(slice_length=slice_length))
+    settings = EndJointsSettings(EvidentRingsSettings(slice_length=0.0, slice_length_if_mirrored=slice_length))
     assert len(joints_at(8.0, settings=settings, mirrored=mirrored)) == joints
 
 
