@@ -31,6 +31,12 @@ class Bent(NamedTuple):
     evidence: SurfaceEvidence
 
 
+@pytest.fixture(autouse=True)
+def _these_are_close(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The two lie at 1.02 radii: rings across this tube leave a choice of few heights."""
+    monkeypatch.setattr(numerics, "CLOSE", 1.3)
+
+
 @pytest.fixture(scope="module")
 def bent_twice() -> Bent:
     return bent(0.0, SHOWN)
