@@ -14,6 +14,8 @@ from kinetree.tasks.numerics.arrays import Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_partners import Limb, MirroredLimbs, RootedParts, mirrored_limbs, parts_touch
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
+from kinetree.tasks.numerics.structure.limbs_apart import FIT_FLOOR
+from kinetree.tasks.numerics.structure.part_motion import fit, residuals
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings
 
@@ -44,6 +46,12 @@ class MirroredSlicesSettings(NamedTuple):
     apart: SliceLimits = SliceLimits(3.9, 2.5, 5.2)
     """Of parts that do not. Slices beside shoulders have lengths of 1.1 to 3.8, at most 2.4 times the other's, and mixtures of
     2.2 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
+    opposed: SliceLimits = SliceLimits(2.2, 2.0, 5.2)
+    """Of parts that touch each other and move as two, as flesh of two thighs does and halves of a pelvis do not; they may be as
+    short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
+    as_one: float = 2.5
+    """What one motion leaves of both parts, in what a motion of its own leaves of each, from which on they move as two. Those
+    runners have 3.1 and 3.7, links from the pelvis to both hips of the dance 1.7 to 2.0."""
     length_within: float = 2.6
     """Length of a part farther out, at most, in radii. Of people 545 to 569, 1, 8, 12, humans, four-legged and random trees 0
     to 9 and of wave, dance and wolf (every fourth frame), two slices have 0.6 and 2.6, and mixtures of 2.2 and 2.4. Of true
@@ -105,13 +113,33 @@ def mirrored_slices(
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
         touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
-        limits = chosen.touching if touch else chosen.apart
-        for short in (_both(tree, limbs, limits, chosen), [] if touch else _one(tree, limbs, limits, chosen)):
+        limits, least = chosen.touching if touch else chosen.apart, chosen.least_length
+        if touch and _move_as_two(body, tree, limbs, confidence, chosen):
+            limits, least = chosen.opposed, 0.0
+        for short in (_both(tree, limbs, limits, least), [] if touch else _one(tree, limbs, limits, chosen)):
             slices = [_slice(body, tree, *limb.part[-2:].tolist()) for limb in short]
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
                 found |= {each.part: each for each in slices}
                 break
     return [found[part] for part in sorted(found)]
+
+
+def _move_as_two(
+    body: MovingSurface, tree: FirstTree, limbs: MirroredLimbs, confidence: Floats, chosen: MirroredSlicesSettings
+) -> bool:
+    """Whether one motion leaves far more of the innermost parts of both limbs than a motion for each."""
+    sides = np.array([limbs.one.part[-1], limbs.other.part[-1]])
+    own = np.flatnonzero(np.isin(tree.label, sides))
+    V, x, area = (np.ascontiguousarray(a, np.float64) for a in (body.V[own], body.x[:, own], body.area[own]))
+    weight = np.asfortranarray(confidence[:, own], np.float64)
+    left = list[float]()
+    for label in (np.zeros(len(own), np.int64), (tree.label[own] == sides[1]).astype(np.int64)):
+        count = int(label.max()) + 1
+        R, t = np.empty((len(x), count, 3, 3)), np.empty((len(x), count, 3))
+        fit(V, x, weight, area, label, np.ones(count, np.bool_), False, len(own), FIT_FLOOR * body.size**2, R, t)
+        square = (residuals(V, x, weight * area, R, t, label) ** 2).mean(axis=0)
+        left.append(float(np.sqrt(square @ np.bincount(label, area) / area.sum())))
+    return left[0] > chosen.as_one * max(left[1], 1e-6 * body.size)
 
 
 def _within(
@@ -130,10 +158,10 @@ def _within(
                 yield one
 
 
-def _both(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: MirroredSlicesSettings) -> list[Limb]:
+def _both(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, least: float) -> list[Limb]:
     """Both limbs, if their innermost parts are as short as slices, and alike."""
     short, long = sorted(_length(tree, limb) for limb in limbs[:2])
-    return [*limbs[:2]] if chosen.least_length <= long <= min(limits.length, limits.alike * short) else []
+    return [*limbs[:2]] if least <= long <= min(limits.length, limits.alike * short) else []
 
 
 def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: MirroredSlicesSettings) -> list[Limb]:

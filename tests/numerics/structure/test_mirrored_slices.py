@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure import agreed_tree
 from kinetree.tasks.numerics.structure import mirrored_slices as numerics
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
-from kinetree.tasks.numerics.structure.joint_partners import PAIRED, Limb, MirroredLimbs
+from kinetree.tasks.numerics.structure.joint_partners import PAIRED, Limb, MirroredLimbs, RootedParts
 from kinetree.tasks.numerics.structure.mirrored_slices import (
     MirroredSlicesSettings,
     Slice,
@@ -373,3 +373,37 @@ def test_a_slice_farther_out_is_shared_out_as_others_are(monkeypatch: pytest.Mon
     left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
     assert len(left.parents) == len(tree.parents) - 2
     np.testing.assert_array_equal(left.place < 0, tree.parents[tree.parents] == 0)
+
+
+def of_halves(together: float) -> tuple[MovingSurface, FirstTree]:
+    """Parts from the fork on that turn by themselves, or by such a share move as one."""
+    body, tree = seen(is_flesh=False, inner=0.0)
+    x, halves = body.x.copy(), np.isin(tree.label, np.flatnonzero(tree.parents == 0))
+    x[:, halves] = together * V[halves] + (1.0 - together) * x[:, halves]
+    return body._replace(x=x), tree
+
+
+@pytest.mark.parametrize(("together", "two"), [(0.0, True), (1.0, False)])
+def test_whether_halves_move_as_two(together: float, two: bool) -> None:
+    body, tree = of_halves(together)
+    (limbs,) = numerics.mirrored_limbs(F, RootedParts(tree.label, tree.parents, tree.radius), of_legs(), PAIRED)
+    assert numerics._move_as_two(body, tree, limbs, ONES, MirroredSlicesSettings(as_one=1.5)) == two
+    assert not numerics._move_as_two(body, tree, limbs, ONES, MirroredSlicesSettings(as_one=np.inf))
+
+
+@pytest.mark.parametrize(("limit", "count"), [(1.5, 2), (np.inf, 0)])
+def test_halves_that_move_as_two_have_limits_of_their_own_and_may_be_short(limit: float, count: int) -> None:
+    none = SliceLimits(0.0, 0.0, 0.0)
+    settings = MirroredSlicesSettings(
+        touching=none, apart=none, opposed=SliceLimits(9.0, 9.0, np.inf), as_one=limit, least_length=9.0
+    )
+    assert len(found_in(of_halves(0.0), settings)) == count
+
+
+def test_uncertain_vertices_do_not_say_that_halves_move_as_two() -> None:
+    body, tree = of_halves(1.0)
+    x, trust = body.x.copy(), ONES.copy()
+    x[::2] += np.random.default_rng(0).normal(0.0, 5.0, x[::2].shape)
+    trust[::2] = 0.0
+    (limbs,) = numerics.mirrored_limbs(F, RootedParts(tree.label, tree.parents, tree.radius), of_legs(), PAIRED)
+    assert not numerics._move_as_two(body._replace(x=x), tree, limbs, trust, MirroredSlicesSettings(as_one=1.5))
