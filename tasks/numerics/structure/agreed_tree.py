@@ -15,12 +15,12 @@ from kinetree.tasks.numerics.structure.agreeing_cut import agreeing_cut, in_othe
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, joint_partners, symmetry
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, joints_of, part_tree
-from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, UNPAIRED, Dropped, Pruned, pruned_without, shared_out
+from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 from kinetree.tasks.numerics.structure.unlike_borders import unlike_borders
 
@@ -65,8 +65,7 @@ def agreed_tree(
 
     The part without which joints drift least goes first, with those that are weak then. They go if so many joints fewer are
     this cut's alone then, so that as many as before are those of other cuts, if none drifts more (`RISE`), and if no two limbs
-    that are mirror images become one part. So does the last part of a limb of a pair with a joint that the other limb lacks and
-    that half of the cuts have at most. Where vertices were aligned, slices beside limbs of a pair go too
+    that are mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too
     (`mirrored_slices`), and flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
@@ -85,7 +84,6 @@ def agreed_tree(
         which, tree = (which, shown) if still else (0, tree)
     others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
     tree = _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings)
-    tree = _without_unpaired_ends(body, tree, leaves, pairs, confidence, others, settings)
     if confidence is not None:
         tree = _without_slices(body, tree, pairs, confidence, settings)
         tree = _without_flesh(body, tree, pairs, confidence, settings)
@@ -115,36 +113,6 @@ def _without_lone_joints(
     while (left := _without_one(body, joints, leaves, pairs, confidence, others, settings)) is not None:
         joints = left
     return _of_cut(tree, joints) if joints.left.dropped else tree
-
-
-def _without_unpaired_ends(
-    body: MovingSurface,
-    tree: FirstTree,
-    leaves: Ints,
-    pairs: LimbPairs,
-    confidence: Floats | None,
-    others: Sequence[Floats],
-    settings: KinematicTreeSettings,
-) -> FirstTree:
-    """The tree without last parts of limbs of a pair whose joint has no partner and is in half of the cuts at most.
-
-    Of people 545 to 569, 1, 8, 12, generated bodies 0 to 9 and recorded ones, every fourth frame too, nine true such joints
-    are in all cuts, one that is none is in two of four.
-    """
-    if len(others) < 2:
-        return tree
-    X, parts = tree.motion.carried(tree.rest[1:]), RootedParts(tree.label, tree.parents, tree.radius)
-    cuts = 1 + np.sum([in_other_cuts(X, [one], body.size) for one in others], axis=0)
-    is_last = ~np.isin(np.arange(len(tree.parents)), tree.parents)
-    has_partner = joint_partners(body.F, parts, pairs, settings.pruning.unpaired.paired) >= 0
-    is_alone = in_mirrored_limbs(parts, pairs) & ~has_partner & is_last & np.append(False, 2 * cuts <= len(others) + 1)
-    left = _pruned(body, tree)
-    for part in np.flatnonzero(is_alone).tolist():
-        number = int(np.flatnonzero(left.origin == part)[0])
-        fewer = pruned_without(body, left, number, UNPAIRED, leaves, pairs, settings.pruning)
-        if len(fewer.dropped) == len(left.dropped) + 1:
-            left = fewer
-    return _of_cut(tree, _joints(body, tree, left, confidence, settings)) if left.dropped else tree
 
 
 def _without_slices(

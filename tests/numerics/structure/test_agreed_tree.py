@@ -280,20 +280,3 @@ def test_first_tree_stays_if_the_frames_do_not_show_what_the_other_has_more(monk
     found = of_pair([one, two, two], cast(FrameEvidence, "the frames"))
     assert found.which == 0
     assert found.tree is one
-
-
-@pytest.mark.parametrize(("cuts", "goes"), [(2, True), (3, False)])
-def test_last_joint_of_one_limb_of_a_pair_goes_if_half_of_the_cuts_have_it(
-    cuts: int, goes: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(numerics, "agreeing_cut", lambda *of: 0)
-    one, other = bent_at(2.0), bent_at(-2.0)
-    found = of_pair([*[one] * cuts, *[other] * (4 - cuts)]).tree
-    assert [d.reason for d in found.graph.dropped] == ["unpaired"] * goes
-    assert len(found.parents) == (1 if goes else 2)
-
-
-def test_last_joints_of_both_limbs_stay(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(numerics, "agreeing_cut", lambda *of: 0)
-    two, other = bent_at(-2.0, 2.0), bent_at(0.0)
-    assert of_pair([two, two, other, other]).tree is two
