@@ -34,7 +34,7 @@ class SliceLimits(NamedTuple):
 
 
 class MirroredSlicesSettings(NamedTuple):
-    """When the innermost parts of limbs are slices.
+    """When parts of limbs are slices.
 
     Chosen on people 0 to 19, 60 to 69 and 86 to 144, of whom five, all running, have slices beside both shoulders, on the
     dance, and on a person's body with collar bones in sixteen generated motions, of which seven show slices beside shoulders.
@@ -107,9 +107,8 @@ def mirrored_slices(
     """
     chosen, parts = settings or MirroredSlicesSettings(), RootedParts(tree.label, tree.parents, tree.radius)
     found = dict[int, Slice]()
-    for limbs in mirrored_limbs(body.F, parts, pairs, paired):
-        for limb in limbs[:2]:
-            found |= {each.part: each for each in _within(body, tree, limb, confidence, chosen)}
+    of_pairs = list(mirrored_limbs(body.F, parts, pairs, paired))
+    for limbs in of_pairs:
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
         touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
@@ -121,6 +120,10 @@ def mirrored_slices(
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
                 found |= {each.part: each for each in slices}
                 break
+    for limb in (limb for limbs in of_pairs for limb in limbs[:2]):
+        for each in _within(body, tree, limb, confidence, chosen):
+            if not found.keys() & {each.above, each.below}:
+                found[each.part] = each
     return [found[part] for part in sorted(found)]
 
 

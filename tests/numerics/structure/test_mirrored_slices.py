@@ -366,6 +366,16 @@ def test_slices_farther_out_lie_beside_long_parts(
         assert tree.parents[[one.below, one.part, one.above]].tolist() == [one.part, one.above, 0]
 
 
+def test_beside_a_slice_at_the_trunk_none_lies_farther_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The flesh is longer than a slice farther out may be, but not than one at the trunk."""
+    body, tree = seen()
+    monkeypatch.setattr(numerics, "_radii_long", lambda tree, below, part: 3.0 if tree.parents[part] == 0 else 1.0)
+    monkeypatch.setattr(numerics, "_mixture", lambda *of: 1.0)
+    assert [tree.parents[one.part] for one in found_in((body, tree))] == [0, 0]
+    left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    assert len(left.parents) == len(tree.parents) - 2
+
+
 def test_a_slice_farther_out_is_shared_out_as_others_are(monkeypatch: pytest.MonkeyPatch) -> None:
     body, tree = seen()
     monkeypatch.setattr(numerics, "_radii_long", lambda tree, below, part: 9.0 if tree.parents[part] == 0 else 1.0)
