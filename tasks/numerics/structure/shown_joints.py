@@ -1,7 +1,7 @@
 """All joints that the frames' surfaces show, at ends of limbs and within the trunk (ours, see `end_joints`).
 
-Two joints of a cut are asked anew, since an alignment smears them: one of the trunk midway between two, and one at the end of a
-limb close to the joint before it.
+Some joints of a cut are asked anew, since an alignment smears them: one of the trunk midway between two, one at the end of a
+limb close to the joint before it, and one close to a joint of the trunk that the surfaces show.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -48,7 +48,7 @@ def with_end_joints(
 
     Where the trunk has a single joint between pairs of limbs, and the surfaces show no other beside it, it may lie midway
     between two. So they are asked again without it; if they show two or more, these take its place, and the limbs are asked
-    anew.
+    anew. Elsewhere a joint of the trunk close to one that surfaces show goes if these do as well without it (`close_joints`).
 
     leaves     : (leaf,) vertices at the ends of limbs
     fits       : by ring of `end_rings`, how its part lies in the frames of `end_joints.judged_runs`
