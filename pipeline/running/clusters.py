@@ -10,7 +10,7 @@ from typing import Any
 
 from distributed import Client, Security, config, performance_report
 from distributed.comm import get_address_host
-from distributed.comm.core import FatalCommClosedError
+from distributed.comm.core import CommClosedError, FatalCommClosedError
 
 from kinetree.errors import ClusterError, ConfigError
 from kinetree.errors.small_text import small_json, small_text
@@ -51,6 +51,13 @@ class _ClosedUnlessConnected(Client):  # type: ignore[misc]
 
     async def _ensure_connected(self, timeout: float | None = None) -> None:
         await asyncio.wait_for(super()._ensure_connected(timeout), timeout)
+
+    def _send_to_scheduler_safe(self, msg: dict[str, Any]) -> None:
+        """What was to be sent while the connection broke is lost with the other work, which the run tells when dask has
+        noticed; dask raises here, where nobody can catch it, and a page of tornado's log is all that comes of it.
+        """
+        with contextlib.suppress(CommClosedError):
+            super()._send_to_scheduler_safe(msg)
 
 
 @contextlib.contextmanager

@@ -9,6 +9,8 @@ import types
 
 import pytest
 from distributed import Client, LocalCluster
+from distributed.batched import BatchedSend
+from distributed.utils import sync
 from pipeline.toy_clusters import INSIDE, NONE
 
 from kinetree.errors import ClusterError, ConfigError
@@ -196,6 +198,18 @@ def test_a_cluster_that_does_not_stop_in_time_is_no_fault_of_the_run(toys, monke
     monkeypatch.setattr(LocalCluster, "close", slow)
     compute = {"cluster": "distributed:LocalCluster", "options": INSIDE, "workers": 1}
     assert toys.run(until=("total",), compute=compute).told["status"] == "done"
+
+
+def test_what_is_sent_while_the_connection_breaks_raises_nothing_that_nobody_can_catch(empty):
+    async def sends(client):
+        with pytest.MonkeyPatch.context() as broken:  # as a closed one of dask's is, until its client notices
+            broken.setattr(client, "scheduler_comm", BatchedSend(interval=1))
+            client.scheduler_comm.comm = types.SimpleNamespace(closed=lambda: True)
+            client._send_to_scheduler_safe({"op": "heartbeat-client"})
+        return client.status
+
+    with clusters.at(Compute(scheduler=empty.scheduler_address)) as client:
+        assert sync(client.loop, sends, client) == "running"
 
 
 def test_a_queue_that_never_starts_a_worker_is_given_up_in_words(toys, late):
