@@ -36,15 +36,15 @@ class LimbSwingSettings(NamedTuple):
     exchange: float = 0.875
     """Share of the energy that an exchange of two stems must fall below. Right exchanges of five people had 0.22 to 0.77, a
     wrong one of a ballet 0.98, all others more than 1."""
-    likely: float = 1.15
+    likely: float = 2.0
     """How many times the energy of the first way an exchange of two stems may have, to be a way as well. After half a turn of
-    the trunk both arms lie as near to each other's stems: of a person who throws, at 6 frames a second, the true way has 0.98
-    times the energy of the first. Chosen on that person; fits on the frame tell the ways apart (`clearly`)."""
+    the trunk both arms lie as near to each other's stems: of two people who throw, at 6 frames a second, the true way has 0.98
+    and 1.46 times the energy of the first. Chosen on them; fits on the frame tell the ways apart (`clearly`)."""
     ways: int = 3
     """Ways at most, for time."""
     clearly: float = 0.8
-    """How much the fit of another way may bend, share of what that of the first bends, to count before it. Chosen on that
-    person: 0.47."""
+    """How much the fit of another way may bend, share of what that of the first bends, to count before it. Chosen on these
+    two: 0.47 and 0.39."""
     begun: float = 2.0
     """How many times the energy it may have after one round, to be gone on with: right exchanges had 0.9 to 1.7 times."""
     stages: tuple[tuple[int, float], ...] = ((2, 12.0), (10, 4.0), (40, 2.0))
