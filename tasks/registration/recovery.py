@@ -1,4 +1,4 @@
-"""Lost limbs found again: frames in which the first fit failed, tracked again from the frame beyond them."""
+"""Lost and exchanged limbs put right: frames whose first fit failed, tracked again from frames beyond and alike ones."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -17,6 +17,7 @@ from kinetree.schemas.registration.vertex_colour import VertexColour
 from kinetree.schemas.topology.extrema import Extrema
 from kinetree.tasks.numerics.input.frame_numbers import take_spans
 from kinetree.tasks.numerics.registration import recovery as numerics
+from kinetree.tasks.numerics.registration.take_entries import Limbs
 from kinetree.tasks.registration.pose import NO_COLOUR, NO_REFERENCE_COLOUR, fit_settings, graph, limbs_of, pose, target
 
 
@@ -30,7 +31,7 @@ def recovery(
     vertex_colour: Mapping[int, VertexColour] = MappingProxyType({}),
     reference_colour: ReferenceColour = NO_REFERENCE_COLOUR,
 ) -> Recovery:
-    """Finds frames that leave more uncovered than the others and tracks them again from the frame beyond (ours)."""
+    """Tracks frames again that leave more uncovered than the others, or bend the body more than alike ones do (ours)."""
     frames = tuple(first_fit)
     uncovered = np.array([f.uncovered for f in first_fit.values()])
     roots = [frames.index(t) for t in (deformation_graph.frame, *take_entries.frames)]
@@ -44,6 +45,7 @@ def recovery(
         fit_settings(first_fit[deformation_graph.frame].fitting),
         takes=spans,
         limbs=lambda at: limbs_of(deformation_graph, tips[frames[at]]),
+        seen=[Limbs(np.array(t.stems), np.array(t.centre), t.size) for t in tips.values()],
     )
     recovered = sorted(outcome.recovered)
     poses = [outcome.recovered[at].pose for at in recovered]

@@ -5,6 +5,7 @@ from stepwise import walk
 
 from kinetree.schemas.registration.first_fit import FirstFit
 from kinetree.tasks.numerics.registration.deformation import shape
+from kinetree.tasks.numerics.registration.limb_swing import LimbSwingSettings, with_two_exchanged
 from kinetree.tasks.registration.pose import first_pose, graph
 from kinetree.tasks.registration.recovery import recovery
 
@@ -35,6 +36,23 @@ def test_lost_frame_is_found_again_from_the_frame_beyond_it() -> None:
     assert found.uncovered_after[0] < 0.02
     again, true = first_pose(tracked[3], found, 3), first_pose(made.first_fit[3], made.recovery, 3)
     assert np.linalg.norm(shape(body, again)[0] - shape(body, true)[0], axis=1).mean() < 0.01 * made.reference.size
+
+
+def test_legs_that_were_exchanged_are_put_right_by_an_alike_frame_though_the_frame_is_covered() -> None:
+    made = walk()
+    body, at = graph(made.deformation_graph), 3
+    stems, seen = np.array(made.reference.stems), np.array(made.extrema[at].stems)
+    true = first_pose(made.first_fit[at], made.recovery, at)
+    every = LimbSwingSettings(stages=((40, np.inf),), ways=1)
+    exchanged = with_two_exchanged(body, true, stems, seen, every)[0]
+    moved = {"rotation": exchanged.rotation, "translation": exchanged.translation}
+    tracked = {**made.first_fit, at: made.first_fit[at].model_copy(update=moved)}
+    found = recovery(made.deformation_graph, made.take_entries, tracked, made.mesh, made.extrema)
+    assert not found.failed.any()
+    assert found.recovered.tolist() == [at]
+    again = first_pose(tracked[at], found, at)
+    wrong, right = (np.linalg.norm(shape(body, p)[0] - shape(body, true)[0], axis=1).max() for p in (exchanged, again))
+    assert right < 0.05 * body.size < wrong
 
 
 def test_lost_frame_whose_neighbours_are_too_far_is_found_again_from_where_it_shows_limbs() -> None:

@@ -1,7 +1,8 @@
-"""Frames in which tracking failed, tracked again: from the frame beyond them, and predicted from the two before them (ours).
+"""Frames in which tracking failed, tracked again: from the frame beyond, from the two before, and from alike ones (ours).
 
 A chain of frames that lost a limb does not find it by going on; entered from its other end, it often does. The last frame of a
 chain has no other end; but its neighbours have been fitted with all samples since, and predict it better than near poses did.
+Frames in which the body holds its limbs alike know what none beside it does (`alike_poses`).
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -10,20 +11,32 @@ from typing import NamedTuple
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.registration.alike_poses import AlikePosesSettings, alike_frames, entry, looked_through
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose
+from kinetree.tasks.numerics.registration.deformation import FitSettings, Pose, bending
 from kinetree.tasks.numerics.registration.deformation_graph import DeformationGraph
-from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs
-from kinetree.tasks.numerics.registration.tracking import Tracking, tracking
+from kinetree.tasks.numerics.registration.limb_swing import FrameLimbs, LimbSwingSettings
+from kinetree.tasks.numerics.registration.near_pose import thinned_body
+from kinetree.tasks.numerics.registration.take_entries import Limbs
+from kinetree.tasks.numerics.registration.tracking import Tracking, TrackingSettings, tracking
 
 
 class RecoverySettings(NamedTuple):
-    """Which frames stand out by what they leave uncovered."""
+    """Which frames stand out by what they leave uncovered, and which new poses count."""
 
     deviations: float = 4.0
     """Median absolute deviations above the median of the sequence. Chosen on the recorded wolf."""
     margin: float = 0.004
     """Share of a frame above the median, where the deviations are smaller. Chosen on the recorded wolf."""
+    clearly: float = LimbSwingSettings().clearly
+    """How far a pose from an alike frame may bend that covers no more, share of how far the frame's own pose bends."""
+
+
+class Tracked(NamedTuple):
+    """Poses of all frames (frame,) and the share of each frame that its pose leaves uncovered (frame,)."""
+
+    pose: Sequence[Pose]
+    uncovered: Floats
 
 
 class Recovery(NamedTuple):
@@ -31,7 +44,7 @@ class Recovery(NamedTuple):
 
     failed    : (frame,) frames that leave more uncovered than the others
     usual     : smallest share that any frame but the reference leaves uncovered; 1 where there is no other frame
-    recovered : by position, the new poses of frames that they cover better
+    recovered : by position, the new poses of frames that are better with them
     """
 
     failed: Flags
@@ -49,10 +62,13 @@ def recovery(
     settings: RecoverySettings | None = None,
     takes: Sequence[tuple[slice, int]] | None = None,
     limbs: Callable[[int], FrameLimbs] | None = None,
+    seen: Sequence[Limbs] | None = None,
 ) -> Recovery:
     """Track failed frames again and keep what covers more (ours).
 
-    Each from the frame beyond it, the outermost first; what still fails, from the two frames before it, outwards.
+    Each from the frame beyond it, the outermost first; what still fails, from the two frames before it, outwards. Last, what
+    still fails, and what bends farther than alike frames, from these: kept is what covers more, or as much and bends clearly
+    less.
 
     graph     : of the reference mesh
     uncovered : (frame,) share of each frame that the tracked body leaves uncovered
@@ -62,6 +78,7 @@ def recovery(
     fitting   : how frames were tracked
     takes     : positions of the frames of each take, and of the one that is reached first; None takes all as one
     limbs     : gives the limbs of the body and of the frame at a position; None where they are not known
+    seen      : (frame,) limbs of the frames; None where they are not known, and `pose` is called for all frames otherwise
     returns   : Recovery
     """
     others = np.arange(len(uncovered)) != reference
@@ -85,7 +102,40 @@ def recovery(
         again = tracking(graph, before, here(beside), target(at), fitting, usual=usual, limbs=own)
         if again.uncovered < share(at):
             recovered[at] = again
+    if seen is not None:
+        now = Tracked([here(at) for at in range(len(failed))], np.array([share(at) for at in range(len(failed))]))
+        recovered |= _from_alike_frames(graph, now, target, reference, fitting, seen, usual, settings or RecoverySettings())
     return Recovery(failed, usual, recovered)
+
+
+def _from_alike_frames(
+    graph: DeformationGraph,
+    now: Tracked,
+    target: Callable[[int], Target],
+    reference: int,
+    fitting: FitSettings,
+    seen: Sequence[Limbs],
+    usual: float,
+    settings: RecoverySettings,
+) -> dict[int, Tracking]:
+    """By position, the frames that are better tracked from alike ones; the other arguments as `recovery` takes them."""
+    bends, failed = np.array([bending(graph, pose) for pose in now.pose]), failures(now.uncovered, settings)
+    bends[reference] = np.inf  # it does not bend, and says nothing of others
+    area, limits = graph.size**2, TrackingSettings()
+    cloud, better = thinned_body(graph), dict[int, Tracking]()
+    for at, others in looked_through(bends, alike_frames(seen), failed, AlikePosesSettings().strained * area):
+        if at == reference:
+            continue
+        own, is_lost = now.pose[at], bool(failed[at])
+        start = entry(cloud, own, target(at), seen, at, others, now.pose.__getitem__, failed=is_lost)
+        if start is None:
+            continue
+        new = tracking(graph, None, start, target(at), fitting, usual=usual)
+        bent, gain = bending(graph, new.pose), now.uncovered[at] - new.uncovered
+        covers_more = gain > settings.margin and bent <= limits.bent * bends[at] + limits.bent_more * area
+        if covers_more or (gain >= -settings.margin and bent <= settings.clearly * bends[at]):
+            better[at] = new
+    return better
 
 
 def failures(uncovered: Floats, settings: RecoverySettings | None = None, usual: Flags | None = None) -> Flags:

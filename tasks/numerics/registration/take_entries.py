@@ -129,11 +129,11 @@ def _unlikeness(a: Limbs, b: Limbs, settings: TakeEntriesSettings) -> float:
     """How differently tips lie to each other and to the roots of their limbs, whatever the place and direction."""
     if len(a.stems) != len(b.stems):
         return settings.missing * abs(len(a.stems) - len(b.stems))
-    return float(np.abs(_lengths(a) - _lengths(b)).mean()) if len(a.stems) else 0.0
+    return float(np.abs(unturned(a) - unturned(b)).mean()) if len(a.stems) else 0.0
 
 
-def _lengths(limbs: Limbs) -> Floats:
-    """Sorted distances between tips, then sorted lengths of limbs, share of the size."""
+def unturned(limbs: Limbs) -> Floats:
+    """What no turning changes: sorted distances between tips, then sorted lengths of limbs, share of the size."""
     tips, roots = limbs.stems[:, -1], limbs.stems[:, 0]
     i, j = np.triu_indices(len(tips), 1)
     between = np.sort(np.linalg.norm(tips[i] - tips[j], axis=1))
