@@ -22,6 +22,7 @@ from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSett
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, joints_of, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
+from kinetree.tasks.numerics.structure.trunk_slices import trunk_slices
 from kinetree.tasks.numerics.structure.unlike_borders import unlike_borders
 
 RISE = 1.15
@@ -65,8 +66,8 @@ def agreed_tree(
 
     The part without which joints drift least goes first, with those that are weak then. They go if so many joints fewer are
     this cut's alone then, so that as many as before are those of other cuts, if none drifts more (`RISE`), and if no two limbs
-    that are mirror images become one part. Where vertices were aligned, slices beside limbs of a pair go too
-    (`mirrored_slices`), and flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
+    that are mirror images become one part. Where vertices were aligned, slices across the trunk go too (`trunk_slices`), and
+    of limbs of a pair (`mirrored_slices`), and flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs
@@ -85,7 +86,9 @@ def agreed_tree(
     others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
     tree = _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings)
     if confidence is not None:
-        tree = _without_slices(body, tree, pairs, confidence, settings)
+        tree = _without_slices(body, tree, trunk_slices(body, tree, leaves), confidence, settings)
+        slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
+        tree = _without_slices(body, tree, slices, confidence, settings)
         tree = _without_flesh(body, tree, pairs, confidence, settings)
     return AgreedTree(which, tree)
 
@@ -116,11 +119,10 @@ def _without_lone_joints(
 
 
 def _without_slices(
-    body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
+    body: MovingSurface, tree: FirstTree, slices: Sequence[Slice], confidence: Floats, settings: KinematicTreeSettings
 ) -> FirstTree:
-    """The tree without slices of flesh at the inner ends of limbs of a pair, shared out so that few joints drift."""
+    """The tree without slices of flesh, shared out between their neighbours so that few joints drift."""
     chosen = MirroredSlicesSettings()
-    slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired, chosen)
     if not slices:
         return tree
     start = _pruned(body, tree)

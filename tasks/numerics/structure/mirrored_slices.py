@@ -116,7 +116,7 @@ def mirrored_slices(
         if touch and _move_as_two(body, tree, limbs, confidence, chosen):
             limits, least = chosen.opposed, 0.0
         for short in (_both(tree, limbs, limits, least), [] if touch else _one(tree, limbs, limits, chosen)):
-            slices = [_slice(body, tree, *limb.part[-2:].tolist()) for limb in short]
+            slices = [slice_between(body, tree, *limb.part[-2:].tolist()) for limb in short]
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
                 found |= {each.part: each for each in slices}
                 break
@@ -156,7 +156,7 @@ def _within(
     for below, part, above in zip(rows, rows[1:], rows[2:], strict=False):
         short = [_radii_long(tree, *two) <= chosen.length_within for two in ((below, part), (part, above))]
         if short == [True, False]:
-            one = _slice(body, tree, below, part)
+            one = slice_between(body, tree, below, part)
             if _mixture(body, tree, one, confidence) <= chosen.mixture_within:
                 yield one
 
@@ -191,7 +191,7 @@ def _radii_long(tree: FirstTree, below: int, part: int) -> float:
     return float(np.linalg.norm(tree.rest[part] - tree.rest[below]) / radius)
 
 
-def _slice(body: MovingSurface, tree: FirstTree, below: int, part: int) -> Slice:
+def slice_between(body: MovingSurface, tree: FirstTree, below: int, part: int) -> Slice:
     """A part that may be a slice."""
     to_inner, to_outer = (body.V - tree.rest[k] for k in (part, below))
     inner, outer = (np.linalg.norm(away, axis=1) for away in (to_inner, to_outer))

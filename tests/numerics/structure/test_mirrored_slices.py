@@ -295,7 +295,7 @@ def test_slices_are_shared_out_where_the_joint_no_longer_drifts(
     monkeypatch.setattr(agreed_tree, "MirroredSlicesSettings", lambda: settings)
     slices = found_in((body, tree))
     assert [bool(ALONG["left"][tree.label == one.part].mean() > 0.0) for one in slices] == [True, False]
-    made = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    made = agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE)
     want = agreed_tree._joints_without(body, tree, agreed_tree._pruned(body, tree), slices, chosen, ONES, TREE)
     np.testing.assert_array_equal(made.label, want.label)
 
@@ -303,7 +303,7 @@ def test_slices_are_shared_out_where_the_joint_no_longer_drifts(
 def test_joint_lies_nearer_so_than_with_one_share_for_all() -> None:
     body, tree = seen(outer=UNEVEN)
     slices, start = found_in((body, tree)), agreed_tree._pruned(body, tree)
-    made = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    made = agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE)
     for share in (0.3, 1.4):
         assert error(made) < error(agreed_tree._joints_without(body, tree, start, slices, [share, share], ONES, TREE))
 
@@ -324,7 +324,7 @@ def test_joints_that_are_to_stay_are_those_of_the_neighbours_then() -> None:
 
 def test_tree_without_them_has_one_joint_a_side_near_the_hip() -> None:
     body, tree = seen()
-    left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    left = agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE)
     assert len(left.parents) == len(tree.parents) - 2
     assert [one.reason for one in left.graph.dropped] == [FLESH, FLESH]
     assert (left.place < 0).sum() == 2
@@ -345,7 +345,7 @@ def test_agreed_tree_has_none_where_vertices_were_aligned() -> None:
 
 def test_tree_without_slices_stays_as_it_is() -> None:
     body, tree = seen(is_flesh=False)
-    assert agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE) is tree
+    assert agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE) is tree
 
 
 @pytest.mark.parametrize(
@@ -372,7 +372,7 @@ def test_beside_a_slice_at_the_trunk_none_lies_farther_out(monkeypatch: pytest.M
     monkeypatch.setattr(numerics, "_radii_long", lambda tree, below, part: 3.0 if tree.parents[part] == 0 else 1.0)
     monkeypatch.setattr(numerics, "_mixture", lambda *of: 1.0)
     assert [tree.parents[one.part] for one in found_in((body, tree))] == [0, 0]
-    left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    left = agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE)
     assert len(left.parents) == len(tree.parents) - 2
 
 
@@ -380,7 +380,7 @@ def test_a_slice_farther_out_is_shared_out_as_others_are(monkeypatch: pytest.Mon
     body, tree = seen()
     monkeypatch.setattr(numerics, "_radii_long", lambda tree, below, part: 9.0 if tree.parents[part] == 0 else 1.0)
     monkeypatch.setattr(numerics, "_mixture", lambda *of: 1.0)
-    left = agreed_tree._without_slices(body, tree, of_legs(), ONES, TREE)
+    left = agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE)
     assert len(left.parents) == len(tree.parents) - 2
     np.testing.assert_array_equal(left.place < 0, tree.parents[tree.parents] == 0)
 
