@@ -1,4 +1,4 @@
-"""Frames in which tracking failed, and the poses that replace theirs (ours)."""
+"""Frames in which tracking failed or exchanged limbs, and the poses that replace theirs (ours)."""
 
 from typing import Annotated
 
@@ -9,7 +9,7 @@ from kinetree.schemas.dims import FRAME, NODE, RECOVERED, ROW, XYZ
 
 
 class Recovery(Artifact):
-    """Frames that leave clearly more uncovered than the others, tracked again from the frame beyond them."""
+    """Frames that leave clearly more uncovered than the others, or bend the body more than alike ones do, tracked again."""
 
     frames: tuple[int, ...]
     """Source frame number of every frame that the body is learned from, ascending."""
@@ -20,7 +20,7 @@ class Recovery(Artifact):
     usual: float
     """Smallest share that any frame but the reference leaves uncovered: holes of the capture, which no pose covers."""
     recovered: Annotated[Ints, Array("int32", RECOVERED)]
-    """Positions of the frames that have another pose now, which covers more."""
+    """Positions of the frames that have another pose now, which covers more, or as much and bends the body clearly less."""
     uncovered_after: Annotated[Floats, Array("float64", RECOVERED)]
     """Share of each recovered frame that its new pose leaves uncovered."""
     rotation: Annotated[Floats, Array("float64", RECOVERED, NODE, ROW, XYZ)]

@@ -36,7 +36,7 @@ def pose(stored: Pose) -> deformation.Pose:
 
 
 def first_pose(fitted: FirstFit, recovery: Recovery, frame: int) -> deformation.Pose:
-    """The pose of a frame before the first pass: recovered where its first fit failed, else as fitted."""
+    """The pose of a frame before the first pass: recovered where its first fit was wrong, else as fitted."""
     row = recovery.row(frame)
     if row is None:
         return pose(fitted)
