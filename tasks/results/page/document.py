@@ -25,6 +25,8 @@ MARKS: dict[Level, str] = {"good": "✓", "except": "!", "unusable": "✗"}
 """Beside the words of a verdict."""
 OPEN_FAULTS = 4
 """Most reasons of a verdict that stand above the player without being unfolded, so that its controls stay on the screen."""
+ROUNDING = 1e-5
+"""Number in a table below which it is what rounding left of 0: a joint that shape alone gives turns by 3e-06°."""
 ASSUMED_ENTRY = '<span><span class="key hollow"></span> assumed, not found, on a dashed bone</span>'
 LEGEND = {**KINDS, "leaf on the surface": SURFACE_LEAF, "surface that is not rigid": NOT_RIGID}
 
@@ -204,8 +206,10 @@ def embedded(content: bytes, caption: str, alternative: str) -> str:
 
 
 def _text(value: object) -> str:
-    """A cell of a table as text."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    """A cell of a table as text; what rounding left of 0 is 0."""
+    if not isinstance(value, float):
+        return str(value)
+    return "0" if abs(value) < ROUNDING else f"{value:.4g}"
 
 
 def legend_entry(name: str, colour: str) -> str:

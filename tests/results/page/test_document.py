@@ -98,6 +98,11 @@ def test_tables_put_numbers_to_the_right_and_escape_cells():
     assert '<td class="n">1.235</td>' in html
 
 
+def test_tables_show_what_rounding_left_of_zero_as_zero():
+    html = table(("a", "b", "c"), [(2.958e-06, -1.4e-13, 0.00012)])
+    assert re.findall(r"<td[^>]*>([^<]*)</td>", html) == ["0", "0", "0.00012"]
+
+
 def test_policy_allows_exactly_the_scripts_of_the_page():
     text = page()
     policy = re.search(r"script-src ([^;]*);", text).group(1)
