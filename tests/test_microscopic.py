@@ -103,12 +103,8 @@ def test_limb_cut_off_in_some_frames_is_told_and_doubted_there_alone(tmp_path: P
     assert far(pipeline, 1) < NEAR
 
 
-def test_teleport_is_an_outlier_and_the_frames_around_it_are_none(tmp_path: Path) -> None:
-    def teleported(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-        turn = trimesh.transformations.rotation_matrix(np.pi / 2, [0, 0, 1])
-        return mesh.copy().apply_transform(turn).apply_translation([0.4 * mesh.scale] * 3)
-
-    source = changed(tmp_path, "teleport", 4, teleported)
+def test_frame_that_no_pose_fits_is_an_outlier_and_the_frames_around_it_are_none(tmp_path: Path) -> None:
+    source = changed(tmp_path, "squashed", 4, lambda mesh: mesh.copy().apply_scale([1.0, 1.0, 0.5]))
     pipeline, account = ran(tmp_path / "out", source=source)
     assert account["status"] == "done"
     confidence = pipeline.artifact("frame_confidence")
@@ -116,6 +112,21 @@ def test_teleport_is_an_outlier_and_the_frames_around_it_are_none(tmp_path: Path
     assert pipeline.artifact("alignment", frame=4).confidence.mean() < 0.3  # type: ignore[attr-defined]
     assert "alignment failed in frame 4" in said(pipeline)
     assert max(far(pipeline, t) for t in range(4)) < NEAR
+
+
+def test_teleported_body_is_found_where_it_holds_its_limbs_as_in_another_frame(tmp_path: Path) -> None:
+    def teleported(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+        turn = trimesh.transformations.rotation_matrix(np.pi / 2, [0, 0, 1])
+        return mesh.copy().apply_transform(turn).apply_translation([0.4 * mesh.scale] * 3)
+
+    source = changed(tmp_path, "teleport", 4, teleported)
+    pipeline, account = ran(tmp_path / "out", source=source)
+    assert account["status"] == "done"
+    recovery = pipeline.artifact("recovery")
+    assert np.flatnonzero(recovery.failed).tolist() == [4]  # type: ignore[attr-defined]
+    assert recovery.recovered.tolist() == [4]  # type: ignore[attr-defined]
+    assert pipeline.artifact("frame_confidence").inlier.all()  # type: ignore[attr-defined]
+    assert max(far(pipeline, t) for t in range(5)) < NEAR
 
 
 def test_frame_with_a_tenth_of_the_vertices_is_aligned_as_well_as_it_is_sampled(tmp_path: Path) -> None:

@@ -102,7 +102,7 @@ def recovery(
         again = tracking(graph, before, here(beside), target(at), fitting, usual=usual, limbs=own)
         if again.uncovered < share(at):
             recovered[at] = again
-    if seen is not None:
+    if seen is not None and len(graph.node):  # without nodes every vertex was followed, and nothing can be exchanged
         now = Tracked([here(at) for at in range(len(failed))], np.array([share(at) for at in range(len(failed))]))
         recovered |= _from_alike_frames(graph, now, target, reference, fitting, seen, usual, settings or RecoverySettings())
     return Recovery(failed, usual, recovered)
