@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import re
 import socket
 import sys
 import threading
@@ -229,6 +230,7 @@ def test_dask_reports_on_a_run(toys, tmp_path):
     run = toys.run(until=("total",), compute=compute)
     assert run.told["status"] == "done"
     text = report.read_text()
-    assert "points+smooth" in text
+    # not which: by the clocks of its processes dask may take some for earlier than the report
+    assert re.search("number of tasks: [1-9]", text)
     assert "<html" in text
     assert [e["link"].startswith("http://127.0.0.1:") for e in run.heard.events if e["event"] == "dashboard"] == [True]
