@@ -7,7 +7,6 @@ from ringed import HEIGHTS, body, cut_of, heights
 from smeared import moving
 
 from kinetree.tasks.numerics.structure.agreed_tree import agreed_tree
-from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.pruning import FLESH
 from kinetree.tasks.numerics.structure.trunk_slices import trunk_slices
 
@@ -15,7 +14,7 @@ THIN, THICK = (0.0, 0.5), (0.0, 0.9)
 """Heights between which a ring of flesh lies about the middle joint of a tube whose radius is 1."""
 
 
-def leaves(of: FirstTree, above: int, below: int) -> np.ndarray:
+def leaves(above: int, below: int) -> np.ndarray:
     """(leaf,) so many vertices of the highest and of the lowest part."""
     z = body().V[:, 2]
     return np.concatenate([np.argsort(-z)[:above], np.argsort(z)[:below]])
@@ -26,7 +25,7 @@ def leaves(of: FirstTree, above: int, below: int) -> np.ndarray:
 )
 def test_a_thin_part_that_carries_several_limbs_is_a_slice(at: tuple[float, float], above: int, below: int, count: int) -> None:
     tree = cut_of(body(), (at, 0.15))
-    found = trunk_slices(moving(body()), tree, leaves(tree, above, below))
+    found = trunk_slices(moving(body()), tree, leaves(above, below))
     assert len(found) == count
     for one in found:
         assert tree.parents[[one.part, one.below]].tolist() == [one.above, one.part]
@@ -37,8 +36,8 @@ def test_a_thin_part_that_carries_several_limbs_is_a_slice(at: tuple[float, floa
 def test_of_slices_beside_each_other_one_is_given() -> None:
     tree = cut_of(body(), (THICK, 0.15))
     close = tree._replace(rest=0.1 * tree.rest)
-    assert len(trunk_slices(moving(body()), tree, leaves(tree, 2, 2))) == 0
-    found = trunk_slices(moving(body()), close, leaves(tree, 2, 2))
+    assert len(trunk_slices(moving(body()), tree, leaves(2, 2))) == 0
+    found = trunk_slices(moving(body()), close, leaves(2, 2))
     assert len(found) > 0
     taken = [part for one in found for part in (one.part, one.below)]
     assert len(set(taken)) == len(taken)
@@ -46,7 +45,7 @@ def test_of_slices_beside_each_other_one_is_given() -> None:
 
 def test_a_slice_is_shared_out_between_its_neighbours_though_other_cuts_have_it() -> None:
     tree, ones = cut_of(body(), (THIN, 0.02)), np.ones((len(body().R), len(body().V)))
-    found = agreed_tree(moving(body()), [tree] * 3, leaves(tree, 2, 2), ones, settings=ALL_STAY).tree
+    found = agreed_tree(moving(body()), [tree] * 3, leaves(2, 2), ones, settings=ALL_STAY).tree
     assert len(tree.parents) == len(HEIGHTS) + 2
     np.testing.assert_allclose(heights(found), HEIGHTS, atol=0.3)
     assert [d.reason for d in found.graph.dropped] == [FLESH]
