@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Floats, Ints
 
 
 class ReferenceSettings(NamedTuple):
@@ -37,6 +37,10 @@ class ReferenceSettings(NamedTuple):
     """The square of the share of area that is missing is divided by this: skin stretches by 1 %, a forearm is 5 %."""
     steady: int = 2
     """Frames on either side that should be as free of contact."""
+    unlike: float = 1.0
+    """A frame on either side says nothing of one whose pose lies farther from its own, in medians of all pairs of frames. The
+    frame after the next lies at 0.2 to 0.7 (median of a sequence) where motion is slow, at 1.1 to 1.3 in every fourth frame of
+    wave, dance and wolf."""
 
 
 class Reference(NamedTuple):
@@ -64,9 +68,9 @@ def reference(
 ) -> Reference:
     """The frame with most leaves; among those one of large area, few handles, a pose near all others, in the middle (ours).
 
-    Leaves, area and handles count as in the worst of a frame and its neighbours, so that frames just before or after
-    contact, or beside one that lacks part of a limb, score lower. A frame's own missing leaves count once more:
-    in fast motion every frame may have one in contact beside it.
+    Leaves, area and handles count as in the worst of a frame and its neighbours of a pose like its own, so that frames just
+    before or after contact, or beside one that lacks part of a limb, score lower; in fast motion a neighbour has another pose
+    and says nothing of it. A frame's own missing leaves count once more.
 
     leaves  : (frame,) number of leaves
     euler   : (frame,) vertices − edges + faces of the frame's clean mesh
@@ -82,13 +86,15 @@ def reference(
     far = remoteness(unlikeness(profile))
     own = far <= settings.foreign
     spans = takes or [slice(0, len(count))]
+    bent = bending(stems / np.sqrt(surface)[:, None, None])
+    around = _alike_around(bent, settings, spans)
     lost = np.where(own, count[own].max() - count, count.max())
-    missing = _worst_around(lost, settings.steady, spans)
-    handles = _worst_around(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0, settings.steady, spans)
+    missing = _worst(lost, around)
+    handles = _worst(np.where(own, characteristic[own].max() - characteristic, 0.0) / 2.0, around)
     frames = np.concatenate([np.full(s.stop - s.start, s.stop - s.start) for s in spans])
     distance = np.concatenate([np.abs(np.arange(s.stop - s.start) - (s.stop - s.start - 1) / 2.0) for s in spans])
-    lack = _worst_around(np.where(own, 1.0 - surface / surface[own].max(), 0.0), settings.steady, spans)
-    pose = settings.pose * remoteness(bending(stems / np.sqrt(surface)[:, None, None]))
+    lack = _worst(np.where(own, 1.0 - surface / surface[own].max(), 0.0), around)
+    pose = settings.pose * remoteness(bent)
     aside = settings.aside * distance / np.maximum(frames, settings.short)
     contact = missing + settings.own * lost + settings.handle * handles + lack**2 / settings.area
     score = 1.0 - contact - pose - aside - np.where(own, 0.0, far)
@@ -152,7 +158,17 @@ def remoteness(distance: Floats) -> Floats:
     return mean / middle if middle > 0.0 else np.zeros(len(mean))
 
 
-def _worst_around(lack: Floats, steady: int, spans: Sequence[slice]) -> Floats:
-    """(frame,) a frame's own lack or that of its neighbours in the take, whichever is worse."""
-    own = [lack[span] for span in spans]
-    return np.array([row[max(t - steady, 0) : t + steady + 1].max() for row in own for t in range(len(row))])
+def _alike_around(bent: Floats, settings: ReferenceSettings, spans: Sequence[slice]) -> list[Ints]:
+    """By frame, itself and the neighbours in its take that say something of it."""
+    most = settings.unlike * float(np.median(bent[np.triu_indices(len(bent), 1)])) if len(bent) > 1 else 0.0
+    beside = [
+        np.arange(max(t - settings.steady, s.start), min(t + settings.steady + 1, s.stop))
+        for s in spans
+        for t in range(s.start, s.stop)
+    ]
+    return [near[(bent[t, near] <= most) | (near == t)] for t, near in enumerate(beside)]
+
+
+def _worst(lack: Floats, around: Sequence[Ints]) -> Floats:
+    """(frame,) a frame's own lack or that of frames around it, whichever is worse."""
+    return np.array([lack[near].max() for near in around])

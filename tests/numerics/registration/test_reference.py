@@ -59,6 +59,13 @@ def test_where_contact_lies_beside_every_frame_one_that_is_free_itself_is_chosen
     assert not found.free
 
 
+def test_contact_beside_a_frame_says_nothing_where_the_pose_is_another():
+    leaves, slow, fast = [4, 5, 4, 4, 4, 4, 4, 4, 4, 4], np.linspace(0, 1, 10), np.tile([0.0, 2.0], 5)
+    assert not reference(leaves, [2] * 10, [1.0] * 10, limbs=limb(slow)).free
+    found = reference(leaves, [2] * 10, [1.0] * 10, limbs=np.concatenate([limb(fast), limb(fast + np.arange(10))]))
+    assert (found.frame, found.free) == (1, True)
+
+
 def test_a_frame_of_another_body_is_neither_chosen_nor_the_measure_of_the_others():
     leaves, area = [5, 5, 5, 5, 8, 5, 5, 5, 5, 5, 5, 5], [1.0] * 4 + [2.0] + [1.0] * 7
     found = reference(leaves, [2] * 12, area, poses([0, 0.1, 0, 0.1, 50, 0, 0.1, 0, 0.1, 0, 0.1, 0]))
