@@ -13,17 +13,15 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
 from kinetree.tasks.numerics.structure.agreeing_cut import agreeing_cut, in_other_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
-from kinetree.tasks.numerics.structure.frame_poses import confident_share
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mirrored_limbs, symmetry
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
-from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, joints_of, part_tree
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
+from kinetree.tasks.numerics.structure.trunk_flesh import with_trunk_flesh
 from kinetree.tasks.numerics.structure.trunk_slices import trunk_slices
-from kinetree.tasks.numerics.structure.unlike_borders import unlike_borders
 
 RISE = 1.15
 """Without a part some joints go and others come in their place. The largest drift of those that come, in the largest of those
@@ -138,23 +136,10 @@ def _without_slices(
 def _without_flesh(
     body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
 ) -> FirstTree:
-    """The tree with flesh of the trunk that one limb of a pair holds as part of the trunk; as it is where a joint would go."""
-    parted = RootedParts(tree.label, tree.parents, tree.radius)
-    found = unlike_borders(body.V, body.F, parted, pairs, settings.pruning.unpaired.paired)
-    if not found:
-        return tree
-    left, label, changed = _pruned(body, tree), tree.label.copy(), set[int]()
-    for flesh in found:
-        trunk = int(tree.parents[flesh.part])
-        label[flesh.vertex] = trunk
-        changed |= {flesh.part, trunk}
-    share = confident_share(label, body.area, confidence, len(body.x), len(tree.parents))
-    parts = left.parts._replace(label=label, confidence=share, joined=joints_of(left.part_tree))
-    parts = moving_by_themselves(body, parts, sorted(changed), confidence)
-    new = left._replace(parts=parts, part_tree=part_tree(body, parts))
-    if joints_of(new.part_tree) != joints_of(left.part_tree):
-        return tree
-    return _of_cut(tree, _joints(body, tree, new, confidence, settings))
+    """The tree with flesh of the trunk that limbs of a pair hold as part of the trunk."""
+    left = _pruned(body, tree)
+    new = with_trunk_flesh(body, left, pairs, confidence, settings.pruning.unpaired.paired)
+    return tree if new is left else _of_cut(tree, _joints(body, tree, new, confidence, settings))
 
 
 def _joints_without(

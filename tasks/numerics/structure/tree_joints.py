@@ -20,6 +20,7 @@ from kinetree.tasks.numerics.structure.root_place import root_amid_limbs
 from kinetree.tasks.numerics.structure.rotation_centres import RotationCentresSettings, rotation_centres, widest_drift
 from kinetree.tasks.numerics.structure.score_spans import score_spans
 from kinetree.tasks.numerics.structure.skinning import skinning
+from kinetree.tasks.numerics.structure.trunk_flesh import with_trunk_flesh
 
 NOISE = 0.002
 """Error of a vertex below which its motion says nothing of its skinning weights, share of the root of the area. Not recorded.
@@ -140,7 +141,9 @@ def tree_joints(
     pairs = limb_pairs(body.V, body.F, leaves)
     left = pruned(body, parts, leaves, evidence, settings=settings.pruning, pairs=pairs)
     if confidence is not None:
-        left = with_limbs_apart(body, left, leaves, pairs, confidence, settings.pruning.unpaired.paired)
+        paired = settings.pruning.unpaired.paired
+        left = with_limbs_apart(body, left, leaves, pairs, confidence, paired)
+        left = with_trunk_flesh(body, left, pairs, confidence, paired)
     return tree_of_parts(body, left, used, used[label], confidence, settings)
 
 

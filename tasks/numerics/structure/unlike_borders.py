@@ -1,7 +1,8 @@
-"""Flesh of the trunk that one limb of a pair holds and the other one does not (ours).
+"""Flesh of the trunk that one limb of a pair holds and the other one does not, or that both hold (ours).
 
 Limbs that are mirror images are equally thick where they hang on the trunk. Where the innermost part of one holds flesh of
-chest or pelvis, its border is much wider than that of the other one, and its joint lies too far inwards.
+chest or pelvis, its border is much wider than that of the other one, and its joint lies too far inwards. Where both do,
+their borders are alike, but much wider than those of the next joints: they lie within the trunk, which hardly narrows there.
 """
 
 from typing import NamedTuple
@@ -35,6 +36,14 @@ class UnlikeBordersSettings(NamedTuple):
     """Radius of the limb's innermost border in that of the other one's, at least."""
     alike: float = 1.15
     """What is left of the limb may have a border that is so many times as wide as the other one's."""
+    flared: float = 2.05
+    """Radius of an innermost border in that of the limb's next one, at least, where both limbs hold flesh. Chosen with
+    `as_flared` and `narrower` on people 0 to 14, 545 to 569 and 600 to 634, generated bodies 0 to 9 and recorded bodies, whole
+    and every fourth frame: five people and the wolf have such flesh."""
+    as_flared: float = 1.93
+    """The same of the other limb, at least: four people have one border as wide and the other 1.76 to 1.90 times, and no flesh."""
+    narrower: float = 0.97
+    """Such flesh ends where the border would be so many times as wide."""
     places: int = 24
     """Levels at which the flesh may end, between the border and a radius from the limb's next joint. Not varied."""
     least_vertices: int = 8
@@ -62,7 +71,7 @@ def unlike_borders(
     paired: float = PAIRED,
     settings: UnlikeBordersSettings | None = None,
 ) -> list[Flesh]:
-    """The flesh of the trunk that one limb of a pair holds, by part: that of the limb with the wider border.
+    """The flesh of the trunk that limbs of a pair hold, by part: that of the limb with the wider border, or of both.
 
     All joints of both limbs must be partners, and no other limb may hang on either: else one of them may have a part of the
     trunk that the other one lacks. Limbs whose innermost parts touch have none, since one may hold the pelvis.
@@ -79,14 +88,30 @@ def unlike_borders(
         both = limbs.one, limbs.other
         if not _are_partners(limbs, parts.parents) or parts_touch(F, parts.place, *(int(limb.part[-1]) for limb in both)):
             continue
-        radius = [float(parts.radius[limb.part[-1]]) for limb in both]
-        side = int(np.argmax(radius))
-        part = int(both[side].part[-1])
-        if part not in found and min(radius) * chosen.wider <= max(radius):
-            vertex = _flesh(V, F, parts, both[side], away[side], min(radius), chosen)
-            if min(len(vertex), (parts.place == part).sum() - len(vertex)) >= chosen.least_vertices:
+        for side, most in _too_wide(parts.radius, limbs, chosen):
+            part = int(both[side].part[-1])
+            vertex = _flesh(V, F, parts, both[side], away[side], most, chosen)
+            is_some = min(len(vertex), (parts.place == part).sum() - len(vertex)) >= chosen.least_vertices
+            if part not in found and is_some:
                 found[part] = Flesh(part, vertex)
     return [found[part] for part in sorted(found)]
+
+
+def _too_wide(radius: Floats, limbs: MirroredLimbs, chosen: UnlikeBordersSettings) -> list[tuple[int, float]]:
+    """Which of two limbs hold flesh of the trunk, and how wide the border of each may be.
+
+    radius : (part,) of borders, mesh unit
+    """
+    both = limbs.one, limbs.other
+    own = [float(radius[limb.part[-1]]) for limb in both]
+    if min(own) * chosen.wider <= max(own):
+        return [(int(np.argmax(own)), chosen.alike * min(own))]
+    if len(limbs.row) < 2:
+        return []
+    flare = [own[side] / max(float(radius[limb.part[-2]]), np.finfo(float).tiny) for side, limb in enumerate(both)]
+    if min(flare) < chosen.as_flared:
+        return []
+    return [(side, chosen.narrower * own[side]) for side in (0, 1) if flare[side] >= chosen.flared]
 
 
 def _are_partners(limbs: MirroredLimbs, parents: Ints) -> bool:
@@ -99,24 +124,24 @@ def _are_partners(limbs: MirroredLimbs, parents: Ints) -> bool:
 
 
 def _flesh(
-    V: Floats, F: Ints, parts: RootedParts, limb: Limb, away: Floats, radius: float, chosen: UnlikeBordersSettings
+    V: Floats, F: Ints, parts: RootedParts, limb: Limb, away: Floats, most: float, chosen: UnlikeBordersSettings
 ) -> Ints:
-    """(own,) the vertices that a limb's innermost part is to lose, so that the limb's border is about as wide as the other
-    limb's; none where it never is.
+    """(own,) the vertices that a limb's innermost part is to lose, so that the limb's border is no wider than allowed; none
+    where it always is.
 
-    away   : (vertex,) from the end of the limb, mesh unit
-    radius : of the other limb's border, mesh unit
+    away : (vertex,) from the end of the limb, mesh unit
+    most : radius of the border, mesh unit
     """
     part, is_limb = int(limb.part[-1]), np.isin(parts.place, limb.part)
     is_own = (parts.place == part) & np.isfinite(away)
     if not is_own.any():
         return np.zeros(0, np.int64)
     edge, trunk = ring_edges(*rings(F, len(V))), parts.place == parts.parents[part]
-    lowest = limb.level[-2] + radius if len(limb.part) > 1 else float(away[is_own].min())
+    lowest = limb.level[-2] + most if len(limb.part) > 1 else float(away[is_own].min())
     for level in np.linspace(limb.level[-1], lowest, chosen.places) if lowest < limb.level[-1] else ():
         lost = _joined_to(edge, trunk, is_own & (away > level))
         met = borders(V, F, (is_limb & ~lost).astype(np.int64))
-        if len(met.radius) and met.radius[0] <= chosen.alike * radius:
+        if len(met.radius) and met.radius[0] <= most:
             return np.flatnonzero(lost)
     return np.zeros(0, np.int64)
 

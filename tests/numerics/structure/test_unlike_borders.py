@@ -1,76 +1,23 @@
-"""Flesh of the trunk that one of two thighs holds goes back to the trunk."""
+"""Flesh of the trunk that one of two thighs holds, or that both hold, goes back to the trunk."""
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from legs import ALONG, FRAMES, HIP, LEAVES, LEGS, F, Legs, V, of_legs
-from shipped import TREE
+from fleshy_legs import flesh_of, pairs, rooted, seen, thigh
+from legs import ALONG, LEGS, F, V, of_legs
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.structure import agreed_tree
+from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure import unlike_borders as numerics
-from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
-from kinetree.tasks.numerics.structure.frame_poses import confident_share
-from kinetree.tasks.numerics.structure.joint_partners import MirroredLimbs, RootedParts
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.joint_partners import MirroredLimbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
-from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
-from kinetree.tasks.numerics.structure.part_tree import MovingSurface, PartPairs, PartTree, part_tree
-from kinetree.tasks.numerics.structure.pruning import Pruned
 from kinetree.tasks.numerics.structure.rotation_centres import Borders, borders
-from kinetree.tasks.numerics.structure.tree_joints import tree_of_parts
 from kinetree.tasks.numerics.structure.unlike_borders import Flesh, UnlikeBordersSettings, unlike_borders
-
-ONES = np.ones((FRAMES, len(V)))
-OUTSIDE = {side: V @ np.array([0.0, np.sign(leg[1]), 0.0]) for side, leg in LEGS.items()}
-
-
-def flesh_of(side: str) -> Flags:
-    """(vertex,) the side of pelvis and chest that one leg's thigh holds."""
-    return np.asarray((ALONG[side] <= HIP) & (OUTSIDE[side] > 0.0) & (V[:, 0] < 10.0))
-
-
-def seen(*sides: str, parts: dict[str, int] | None = None) -> tuple[MovingSurface, FirstTree]:
-    """The legs as a cut has them, with flesh of the trunk in the thighs of these sides."""
-    legs = Legs.of(parts)
-    label = legs.parts.label.copy()
-    for side in sides:
-        label[flesh_of(side)] = legs.parts.label[np.argmin(np.abs(ALONG[side] - 10.0))]
-    count = int(label.max()) + 1
-    moved = moving_by_themselves(legs.body, legs.parts._replace(label=label), range(count), ONES)
-    found = part_tree(legs.body, moved)
-    left = Pruned(moved, found, found, np.arange(count), ())
-    return legs.body, in_tree_order(tree_of_parts(legs.body, left, np.arange(count), label, ONES, TREE), count)
-
-
-def pairs() -> LimbPairs:
-    """Both legs; twice, since a single pair of limbs says nothing of a body."""
-    return LimbPairs(*(np.concatenate([a, a]) for a in of_legs()))
-
-
-def rooted(tree: FirstTree) -> RootedParts:
-    return RootedParts(tree.label, tree.parents, tree.radius)
 
 
 def found_in(tree: FirstTree, settings: UnlikeBordersSettings | None = None, of: LimbPairs | None = None) -> list[Flesh]:
     return unlike_borders(V, F, rooted(tree), pairs() if of is None else of, settings=settings)
-
-
-def thigh(tree: FirstTree, side: str) -> int:
-    """The part of what lies amid a thigh."""
-    return int(tree.label[np.argmin(np.abs(ALONG[side] - 10.0))])
-
-
-def hips(tree: FirstTree) -> list[float]:
-    """How far the joint of each thigh is from its true place."""
-    return [float(np.linalg.norm(tree.rest[thigh(tree, side)] - HIP * leg)) for side, leg in LEGS.items()]
-
-
-def ends(tree: FirstTree) -> set[frozenset[int]]:
-    """What each joint joins, by vertices amid thighs and at the ends of legs and chest; −1 for the pelvis."""
-    places = {int(tree.label[v]): v for v in (*(int(np.argmin(np.abs(along - 10.0))) for along in ALONG.values()), *LEAVES[:3])}
-    number = [places.get(part, -1) for part in range(len(tree.parents))]
-    return {frozenset((number[k], number[int(tree.parents[k])])) for k in range(1, len(tree.parents))}
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -85,6 +32,45 @@ def test_flesh_on_one_side_is_found(side: str) -> None:
 @pytest.mark.parametrize("sides", [(), ("left", "right")])
 def test_limbs_that_are_alike_have_none(sides: Sequence[str]) -> None:
     assert found_in(seen(*sides)[1]) == []
+
+
+def flares(tree: FirstTree) -> list[float]:
+    """How many times as wide as that of the shank the border of each thigh is."""
+    shank = {side: int(tree.label[np.argmax(ALONG[side])]) for side in LEGS}
+    return [float(tree.radius[thigh(tree, side)] / tree.radius[shank[side]]) for side in LEGS]
+
+
+def flared(tree: FirstTree, most: float = 0.99, least: float = 0.98) -> UnlikeBordersSettings:
+    """Borders of the thighs are this much wider than is asked for."""
+    return UnlikeBordersSettings(flared=most * max(flares(tree)), as_flared=least * min(flares(tree)))
+
+
+def test_flesh_that_both_hold_is_found_where_their_borders_are_much_wider_than_the_next_ones() -> None:
+    _, tree = seen("left", "right")
+    both = found_in(tree, flared(tree, most=0.98 * min(flares(tree)) / max(flares(tree))))
+    assert [one.part for one in both] == sorted(thigh(tree, side) for side in LEGS)
+    for one in both:
+        met = borders(V, F, np.isin(tree.label, _limb_from(tree, one.part)).astype(np.int64))
+        lost = np.isin(np.arange(len(V)), one.vertex)
+        left = borders(V, F, (np.isin(tree.label, _limb_from(tree, one.part)) & ~lost).astype(np.int64))
+        assert left.radius[0] <= 0.97 * met.radius[0]
+    assert found_in(tree, flared(tree, most=1.01)) == []
+
+
+def _limb_from(tree: FirstTree, part: int) -> list[int]:
+    """A part and those that hang on it."""
+    return [part, *(below for child in np.flatnonzero(tree.parents == part) for below in _limb_from(tree, int(child)))]
+
+
+def test_no_flesh_is_in_either_where_one_border_is_slim() -> None:
+    _, tree = seen("left", "right")
+    assert found_in(tree, flared(tree, most=0.98, least=1.01)) == []
+
+
+def test_limbs_without_a_next_joint_have_no_flesh_on_both_sides() -> None:
+    whole = {"pelvis": 0, "left thigh": 1, "left shank": 1, "right thigh": 2, "right shank": 2, "chest": 3}
+    _, tree = seen("left", "right", parts=whole)
+    assert found_in(tree, UnlikeBordersSettings(flared=0.0, as_flared=0.0)) == []
 
 
 def test_a_single_pair_of_limbs_tells_nothing() -> None:
@@ -140,11 +126,11 @@ def test_flesh_ends_a_radius_before_the_next_joint(radius: float, lowest: float,
 
     def tried_with(_V: Floats, _F: Ints, is_limb: Ints) -> Borders:
         tried.append(float(away[is_own & (is_limb > 0)].max()))
-        return borders(_V, _F, is_limb)
+        met = borders(_V, _F, is_limb)
+        return met._replace(radius=np.full_like(met.radius, np.inf))
 
     monkeypatch.setattr(numerics, "borders", tried_with)
-    nothing = UnlikeBordersSettings(alike=0.0)
-    assert len(numerics._flesh(V, F, rooted(tree), limbs.one, away, radius, nothing)) == 0
+    assert len(numerics._flesh(V, F, rooted(tree), limbs.one, away, radius, UnlikeBordersSettings())) == 0
     least = float(limbs.one.level[-2]) + radius
     assert min(tried) >= max(least - 1.0, lowest)
     assert (min(tried) < least + 1.0) == (lowest == 0.0)
@@ -203,49 +189,3 @@ def test_limb_that_carries_another_one_has_none() -> None:
     (one,) = found_in(tree)
     chest = int(tree.label[np.argmax(V[:, 0])])
     assert found_in(tree._replace(parents=np.where(np.arange(len(tree.parents)) == chest, one.part, tree.parents))) == []
-
-
-def test_its_joint_goes_where_the_limb_turns() -> None:
-    body, tree = seen("left")
-    left = agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE)
-    (before, other), (after, same) = hips(tree), hips(left)
-    assert after < 0.5 * before
-    assert same == pytest.approx(other, abs=0.2)
-    assert ends(left) == ends(tree)
-    trust = np.random.default_rng(0).uniform(size=ONES.shape)
-    unsure = agreed_tree._without_flesh(body, tree, pairs(), trust, TREE)
-    share = confident_share(unsure.label, body.area, trust, FRAMES, len(unsure.parents))
-    assert unsure.certain_share == pytest.approx(share)
-
-
-def test_the_trunk_is_fitted_anew() -> None:
-    body, tree = seen("left")
-    cut = agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE)
-    chest = [int(one.parents[thigh(one, "left")]) for one in (tree, cut)]
-    assert np.abs(tree.t[:, chest[0]] - cut.t[:, chest[1]]).max() > 0.0
-
-
-def test_tree_stays_if_a_joint_would_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    body, tree = seen("left")
-    real, asked = agreed_tree.joints_of, list[PartTree]()
-
-    def of_fewer(found: PartTree) -> PartPairs:
-        asked.append(found)
-        return frozenset(sorted(real(found), key=sorted)[: 2 if len(asked) == 2 else None])
-
-    monkeypatch.setattr(agreed_tree, "joints_of", of_fewer)
-    assert agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE) is tree
-
-
-def test_nothing_changes_where_there_is_none() -> None:
-    body, tree = seen()
-    assert agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE) is tree
-
-
-@pytest.mark.parametrize("is_aligned", [True, False])
-def test_agreed_tree_is_without_it_where_vertices_were_aligned(is_aligned: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    body, tree = seen("left")
-    monkeypatch.setattr(agreed_tree, "limb_pairs", lambda *_: pairs())
-    trust = ONES if is_aligned else None
-    left = agreed_tree.agreed_tree(body, [tree], LEAVES, trust, settings=TREE).tree
-    assert (hips(left)[0] < 0.5 * hips(tree)[0]) == is_aligned
