@@ -41,7 +41,7 @@ class UnlikeBordersSettings(NamedTuple):
     `as_flared` and `narrower` on people 0 to 14, 545 to 569 and 600 to 634, generated bodies 0 to 9 and recorded bodies, whole
     and every fourth frame: five people and the wolf have such flesh."""
     as_flared: float = 1.93
-    """The same of the other limb, at least: four people have one border as wide and the other 1.76 to 1.90 times, and no flesh."""
+    """The same of the other limb, at least: four people have one as wide, the other 1.76 to 1.90 times, and no flesh."""
     narrower: float = 0.97
     """Such flesh ends where the border would be so many times as wide."""
     places: int = 24
