@@ -39,6 +39,19 @@ class Tracked(NamedTuple):
     uncovered: Floats
 
 
+class _Frames(NamedTuple):
+    """How every frame is fitted: `graph`, `target` and `fitting` of `recovery`, and `Recovery.usual`."""
+
+    graph: DeformationGraph
+    target: Callable[[int], Target]
+    fitting: FitSettings
+    usual: float
+
+    def tracked(self, at: int, before: Pose | None, start: Pose, limbs: FrameLimbs | None = None) -> Tracking:
+        """The frame at a position, begun with the pose `start` of another one and, if it is known, of that before it."""
+        return tracking(self.graph, before, start, self.target(at), self.fitting, usual=self.usual, limbs=limbs)
+
+
 class Recovery(NamedTuple):
     """Which frames failed and which have a better pose.
 
@@ -83,7 +96,7 @@ def recovery(
     """
     others = np.arange(len(uncovered)) != reference
     failed = failures(uncovered, settings) & others
-    usual = float(uncovered[others].min(initial=1.0))
+    frames = _Frames(graph, target, fitting, usual=float(uncovered[others].min(initial=1.0)))
     recovered: dict[int, Tracking] = {}
     spans = takes or [(slice(0, len(failed)), reference)]
     ways = [*((at, beyond, None) for at, beyond in _inwards(failed, spans)), *_outwards(failed, spans)]
@@ -98,27 +111,20 @@ def recovery(
         if share(beside) >= share(at) or (earlier is not None and not _still_fails(at, share(at), uncovered, settings)):
             continue
         before = None if earlier is None else here(earlier)
-        own = None if limbs is None else limbs(at)
-        again = tracking(graph, before, here(beside), target(at), fitting, usual=usual, limbs=own)
+        again = frames.tracked(at, before, here(beside), None if limbs is None else limbs(at))
         if again.uncovered < share(at):
             recovered[at] = again
     if seen is not None and len(graph.node):  # without nodes every vertex was followed, and nothing can be exchanged
         now = Tracked([here(at) for at in range(len(failed))], np.array([share(at) for at in range(len(failed))]))
-        recovered |= _from_alike_frames(graph, now, target, reference, fitting, seen, usual, settings or RecoverySettings())
-    return Recovery(failed, usual, recovered)
+        recovered |= _from_alike_frames(frames, now, reference, seen, settings or RecoverySettings())
+    return Recovery(failed, frames.usual, recovered)
 
 
 def _from_alike_frames(
-    graph: DeformationGraph,
-    now: Tracked,
-    target: Callable[[int], Target],
-    reference: int,
-    fitting: FitSettings,
-    seen: Sequence[Limbs],
-    usual: float,
-    settings: RecoverySettings,
+    frames: _Frames, now: Tracked, reference: int, seen: Sequence[Limbs], settings: RecoverySettings
 ) -> dict[int, Tracking]:
     """By position, the frames that are better tracked from alike ones; the other arguments as `recovery` takes them."""
+    graph, target = frames.graph, frames.target
     bends, failed = np.array([bending(graph, pose) for pose in now.pose]), failures(now.uncovered, settings)
     bends[reference] = np.inf  # it does not bend, and says nothing of others
     area, limits = graph.size**2, TrackingSettings()
@@ -130,7 +136,7 @@ def _from_alike_frames(
         start = entry(cloud, own, target(at), seen, at, others, now.pose.__getitem__, failed=is_lost)
         if start is None:
             continue
-        new = tracking(graph, None, start, target(at), fitting, usual=usual)
+        new = frames.tracked(at, None, start)
         bent, gain = bending(graph, new.pose), now.uncovered[at] - new.uncovered
         covers_more = gain > settings.margin and bent <= limits.bent * bends[at] + limits.bent_more * area
         if covers_more or (gain >= -settings.margin and bent <= settings.clearly * bends[at]):
