@@ -23,11 +23,13 @@ from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettin
 class SliceLimits(NamedTuple):
     """What slices are at most.
 
-    length  : from joint to joint, in radii of their smaller border
+    least   : length of the longer one, from joint to joint, in radii of their smaller border, at least
+    length  : the same, at most
     alike   : length of one in that of the other
     mixture : how much more a mixture of the motions of both neighbours leaves of the part than one of its own with either
     """
 
+    least: float
     length: float
     alike: float
     mixture: float
@@ -40,13 +42,14 @@ class MirroredSlicesSettings(NamedTuple):
     dance, and on a person's body with collar bones in sixteen generated motions, of which seven show slices beside shoulders.
     """
 
-    touching: SliceLimits = SliceLimits(2.2, 1.5, 3.6)
+    touching: SliceLimits = SliceLimits(1.2, 2.2, 1.5, 3.6)
     """Of parts that touch each other, as those about a pelvis do: the two halves of a wolf's have lengths of 2.5 and 2.9, and
-    mixtures of 2.8 and 3.9; a pelvis that one limb hangs on is 2.4 times as long as flesh above the other hip."""
-    apart: SliceLimits = SliceLimits(3.9, 2.5, 5.2)
-    """Of parts that do not. Slices beside shoulders have lengths of 1.1 to 3.8, at most 2.4 times the other's, and mixtures of
-    2.2 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
-    opposed: SliceLimits = SliceLimits(2.2, 2.0, 5.2)
+    mixtures of 2.8 and 3.9; a pelvis that one limb hangs on is 2.4 times as long as flesh above the other hip. True links from
+    the pelvis to both hips of the dance are 0.8, 1.03 and 1.13 long, flesh above the hips of person 124 0.9."""
+    apart: SliceLimits = SliceLimits(1.0, 3.9, 2.5, 5.2)
+    """Of parts that do not. Slices beside shoulders have lengths of 1.0 to 3.8, the longer one of 1.17 and more, at most 2.4
+    times the other's, and mixtures of 1.3 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
+    opposed: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 5.2)
     """Of parts that touch each other and move as two, as flesh of two thighs does and halves of a pelvis do not; they may be as
     short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
     as_one: float = 2.5
@@ -59,9 +62,6 @@ class MirroredSlicesSettings(NamedTuple):
     foot (`end_joints`). All others are 3.6 and more long."""
     mixture_within: float = 3.0
     """Mixture of a part farther out, at most."""
-    least_length: float = 1.2
-    """Length of the longer one, at least: slices beside shoulders have 1.4 and more, true links from the pelvis to both hips
-    of the dance 0.8 and 1.03, flesh above the hips of person 124 0.9."""
     least_alone: float = UnpairedPartsSettings().near
     """Length of a slice on one side alone, at least: shorter ones `unpaired_parts` has judged already, and kept a true link
     from the pelvis to one hip of the dance (every fourth frame), which has 1.43. Two slices were seen, with 2.6 and 2.7."""
@@ -112,10 +112,10 @@ def mirrored_slices(
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
         touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
-        limits, least = chosen.touching if touch else chosen.apart, chosen.least_length
+        limits = chosen.touching if touch else chosen.apart
         if touch and _move_as_two(body, tree, limbs, confidence, chosen):
-            limits, least = chosen.opposed, 0.0
-        for short in (_both(tree, limbs, limits, least), [] if touch else _one(tree, limbs, limits, chosen)):
+            limits = chosen.opposed
+        for short in (_both(tree, limbs, limits), [] if touch else _one(tree, limbs, limits, chosen)):
             slices = [slice_between(body, tree, *limb.part[-2:].tolist()) for limb in short]
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
                 found |= {each.part: each for each in slices}
@@ -161,10 +161,10 @@ def _within(
                 yield one
 
 
-def _both(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, least: float) -> list[Limb]:
+def _both(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits) -> list[Limb]:
     """Both limbs, if their innermost parts are as short as slices, and alike."""
     short, long = sorted(_length(tree, limb) for limb in limbs[:2])
-    return [*limbs[:2]] if least <= long <= min(limits.length, limits.alike * short) else []
+    return [*limbs[:2]] if limits.least <= long <= min(limits.length, limits.alike * short) else []
 
 
 def _one(tree: FirstTree, limbs: MirroredLimbs, limits: SliceLimits, chosen: MirroredSlicesSettings) -> list[Limb]:

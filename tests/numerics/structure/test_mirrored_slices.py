@@ -95,8 +95,8 @@ def limits(
     length: float = 2.2, alike: float = 1.5, mixture: float = 3.6, least: float = 1.2, alone: float = 1.8
 ) -> MirroredSlicesSettings:
     """Of parts that do not touch each other, as here; parts that do are none."""
-    apart, none = SliceLimits(length, alike, mixture), SliceLimits(0.0, 0.0, 0.0)
-    return MirroredSlicesSettings(apart=apart, touching=none, least_length=least, least_alone=alone)
+    apart, none = SliceLimits(least, length, alike, mixture), SliceLimits(0.0, 0.0, 0.0, 0.0)
+    return MirroredSlicesSettings(apart=apart, touching=none, least_alone=alone)
 
 
 ALONE = MirroredSlicesSettings(least_alone=1.2)
@@ -167,7 +167,9 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
         ((9.0, 1.9), (5.1, 5.1), INNER, 1),
         ((9.0, 1.7), (5.1, 5.1), INNER, 0),
         ((2.5, 1.7), (5.3, 5.1), INNER, 0),
-        ((1.1, 1.0), (5.1, 5.1), INNER, 0),
+        ((1.1, 1.0), (5.1, 5.1), INNER, 2),
+        ((0.9, 0.9), (5.1, 5.1), INNER, 0),
+        ((1.1, 1.0), (3.5, 3.5), 0.0, 0),
         ((2.1, 1.5), (3.5, 3.5), 0.0, 2),
         ((2.1, 1.5), (3.7, 3.5), 0.0, 0),
         ((2.3, 1.6), (3.5, 3.5), 0.0, 0),
@@ -232,15 +234,15 @@ def test_both_are_as_long(alike: float, count: int) -> None:
 def test_parts_that_touch_each_other_have_limits_of_their_own() -> None:
     """Flesh from the fork on: both halves meet there."""
     touching, apart = seen(inner=0.0), seen()
-    wide, none = SliceLimits(99.0, 99.0, 99.0), SliceLimits(0.0, 0.0, 0.0)
+    wide, none = SliceLimits(0.0, 99.0, 99.0, 99.0), SliceLimits(0.0, 0.0, 0.0, 0.0)
     for beside, away, counts in ((wide, none, (2, 0)), (none, wide, (0, 2))):
-        settings = MirroredSlicesSettings(touching=beside, apart=away, least_length=0.0)
+        settings = MirroredSlicesSettings(touching=beside, apart=away)
         assert tuple(len(found_in(there, settings)) for there in (touching, apart)) == counts
 
 
 def test_slices_on_one_side_that_touch_the_other_limb_are_none() -> None:
-    lone = SliceLimits(99.0, 1.0, 99.0)
-    settings = MirroredSlicesSettings(touching=lone, apart=lone, least_length=0.0, least_alone=0.0, longer=1.0)
+    lone = SliceLimits(0.0, 99.0, 1.0, 99.0)
+    settings = MirroredSlicesSettings(touching=lone, apart=lone, least_alone=0.0, longer=1.0)
     counts = [len(found_in(seen(flesh_of=("left",), limb_of=("right",), inner=inner), settings)) for inner in (0.0, INNER)]
     assert counts == [0, 1]
 
@@ -255,7 +257,7 @@ def test_a_bone_that_is_nowhere_certain_is_none() -> None:
 def test_a_slice_opposite_to_a_bone_that_is_hardly_longer_is_one_all_the_same() -> None:
     """Both are short enough for a pair, but one is no mixture."""
     there = seen(flesh_of=("left",), limb_of=("right",))
-    assert len(found_in(there, ALONE._replace(apart=SliceLimits(9.0, 3.0, 5.2)))) == 1
+    assert len(found_in(there, ALONE._replace(apart=SliceLimits(0.0, 9.0, 3.0, 5.2)))) == 1
 
 
 def test_how_far_inwards_a_vertex_lies() -> None:
@@ -403,10 +405,8 @@ def test_whether_halves_move_as_two(together: float, two: bool) -> None:
 
 @pytest.mark.parametrize(("limit", "count"), [(1.5, 2), (np.inf, 0)])
 def test_halves_that_move_as_two_have_limits_of_their_own_and_may_be_short(limit: float, count: int) -> None:
-    none = SliceLimits(0.0, 0.0, 0.0)
-    settings = MirroredSlicesSettings(
-        touching=none, apart=none, opposed=SliceLimits(9.0, 9.0, np.inf), as_one=limit, least_length=9.0
-    )
+    none = SliceLimits(0.0, 0.0, 0.0, 0.0)
+    settings = MirroredSlicesSettings(touching=none, apart=none, opposed=SliceLimits(0.0, 9.0, 9.0, np.inf), as_one=limit)
     assert len(found_in(of_halves(0.0), settings)) == count
 
 
