@@ -65,7 +65,7 @@ def agreed_tree(
     The part without which joints drift least goes first, with those that are weak then. They go if so many joints fewer are
     this cut's alone then, so that as many as before are those of other cuts, if none drifts more (`RISE`), and if no two limbs
     that are mirror images become one part. Where vertices were aligned, slices across the trunk go too (`trunk_slices`), and
-    of limbs of a pair (`mirrored_slices`), and flesh of the trunk that one of them holds goes back to it (`unlike_borders`).
+    of limbs of a pair (`mirrored_slices`), and flesh of the trunk that they hold goes back to it (`trunk_flesh`).
 
     trees      : of all cuts, in the reference, the first cut's first; without joints at ends and bones that no cut can find
     leaves     : (leaf,) vertices at the ends of limbs

@@ -7,11 +7,11 @@ from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface, joints_of, part_tree
 from kinetree.tasks.numerics.structure.pruning import Pruned
-from kinetree.tasks.numerics.structure.unlike_borders import unlike_borders
+from kinetree.tasks.numerics.structure.wide_borders import wide_borders
 
 
 def with_trunk_flesh(body: MovingSurface, state: Pruned, pairs: LimbPairs, confidence: Floats, paired: float) -> Pruned:
-    """The parts and their tree with flesh of the trunk that limbs of a pair hold (`unlike_borders`) as part of the trunk.
+    """The parts and their tree with flesh of the trunk that limbs of a pair hold (`wide_borders`) as part of the trunk.
 
     As they are where a joint would go.
 
@@ -21,7 +21,7 @@ def with_trunk_flesh(body: MovingSurface, state: Pruned, pairs: LimbPairs, confi
     """
     parts, tree = state.parts, state.part_tree.tree
     label, changed = parts.label.copy(), set[int]()
-    for flesh in unlike_borders(body.V, body.F, RootedParts.of(parts.label, state.part_tree), pairs, paired):
+    for flesh in wide_borders(body.V, body.F, RootedParts.of(parts.label, state.part_tree), pairs, paired):
         limb, trunk = int(tree.order[flesh.part]), int(tree.order[tree.parents[flesh.part]])
         label[flesh.vertex] = trunk
         changed |= {limb, trunk}

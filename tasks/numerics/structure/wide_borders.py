@@ -25,7 +25,7 @@ from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.rotation_centres import borders
 
 
-class UnlikeBordersSettings(NamedTuple):
+class WideBordersSettings(NamedTuple):
     """When a limb holds flesh of the trunk, and how much of it.
 
     Chosen on people 0 to 14, 100 to 114, 215 to 239, 300 to 311, 400 to 414, and 55 to 84 and 415 to 429 at 6 frames a second,
@@ -63,13 +63,13 @@ class Flesh(NamedTuple):
     vertex: Ints
 
 
-def unlike_borders(
+def wide_borders(
     V: Floats,
     F: Ints,
     parts: RootedParts,
     pairs: LimbPairs,
     paired: float = PAIRED,
-    settings: UnlikeBordersSettings | None = None,
+    settings: WideBordersSettings | None = None,
 ) -> list[Flesh]:
     """The flesh of the trunk that limbs of a pair hold, by part: that of the limb with the wider border, or of both.
 
@@ -81,7 +81,7 @@ def unlike_borders(
     pairs  : limbs that are mirror images
     paired : radii, see `joint_partners.PAIRED`
     """
-    chosen, found = settings or UnlikeBordersSettings(), dict[int, Flesh]()
+    chosen, found = settings or WideBordersSettings(), dict[int, Flesh]()
     if len(pairs.tip) < chosen.least_pairs:
         return []
     for away, limbs in zip(pairs.distance, mirrored_limbs(F, parts, pairs, paired), strict=False):
@@ -97,7 +97,7 @@ def unlike_borders(
     return [found[part] for part in sorted(found)]
 
 
-def _too_wide(radius: Floats, limbs: MirroredLimbs, chosen: UnlikeBordersSettings) -> list[tuple[int, float]]:
+def _too_wide(radius: Floats, limbs: MirroredLimbs, chosen: WideBordersSettings) -> list[tuple[int, float]]:
     """Which of two limbs hold flesh of the trunk, and how wide the border of each may be.
 
     radius : (part,) of borders, mesh unit
@@ -123,9 +123,7 @@ def _are_partners(limbs: MirroredLimbs, parents: Ints) -> bool:
     return are_all and row.tolist() == [[k, k] for k in range(count)] and is_single
 
 
-def _flesh(
-    V: Floats, F: Ints, parts: RootedParts, limb: Limb, away: Floats, most: float, chosen: UnlikeBordersSettings
-) -> Ints:
+def _flesh(V: Floats, F: Ints, parts: RootedParts, limb: Limb, away: Floats, most: float, chosen: WideBordersSettings) -> Ints:
     """(own,) the vertices that a limb's innermost part is to lose, so that the limb's border is no wider than allowed; none
     where it always is.
 

@@ -8,16 +8,16 @@ from fleshy_legs import flesh_of, pairs, rooted, seen, thigh
 from legs import ALONG, LEGS, F, V, of_legs
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
-from kinetree.tasks.numerics.structure import unlike_borders as numerics
+from kinetree.tasks.numerics.structure import wide_borders as numerics
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_partners import MirroredLimbs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.rotation_centres import Borders, borders
-from kinetree.tasks.numerics.structure.unlike_borders import Flesh, UnlikeBordersSettings, unlike_borders
+from kinetree.tasks.numerics.structure.wide_borders import Flesh, WideBordersSettings, wide_borders
 
 
-def found_in(tree: FirstTree, settings: UnlikeBordersSettings | None = None, of: LimbPairs | None = None) -> list[Flesh]:
-    return unlike_borders(V, F, rooted(tree), pairs() if of is None else of, settings=settings)
+def found_in(tree: FirstTree, settings: WideBordersSettings | None = None, of: LimbPairs | None = None) -> list[Flesh]:
+    return wide_borders(V, F, rooted(tree), pairs() if of is None else of, settings=settings)
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -40,9 +40,9 @@ def flares(tree: FirstTree) -> list[float]:
     return [float(tree.radius[thigh(tree, side)] / tree.radius[shank[side]]) for side in LEGS]
 
 
-def flared(tree: FirstTree, most: float = 0.99, least: float = 0.98) -> UnlikeBordersSettings:
+def flared(tree: FirstTree, most: float = 0.99, least: float = 0.98) -> WideBordersSettings:
     """Borders of the thighs are this much wider than is asked for."""
-    return UnlikeBordersSettings(flared=most * max(flares(tree)), as_flared=least * min(flares(tree)))
+    return WideBordersSettings(flared=most * max(flares(tree)), as_flared=least * min(flares(tree)))
 
 
 def test_flesh_that_both_hold_is_found_where_their_borders_are_much_wider_than_the_next_ones() -> None:
@@ -70,34 +70,34 @@ def test_no_flesh_is_in_either_where_one_border_is_slim() -> None:
 def test_limbs_without_a_next_joint_have_no_flesh_on_both_sides() -> None:
     whole = {"pelvis": 0, "left thigh": 1, "left shank": 1, "right thigh": 2, "right shank": 2, "chest": 3}
     _, tree = seen("left", "right", parts=whole)
-    assert found_in(tree, UnlikeBordersSettings(flared=0.0, as_flared=0.0)) == []
+    assert found_in(tree, WideBordersSettings(flared=0.0, as_flared=0.0)) == []
 
 
 def test_a_single_pair_of_limbs_tells_nothing() -> None:
     _, tree = seen("left")
     assert found_in(tree, of=of_legs()) == []
-    assert len(found_in(tree, UnlikeBordersSettings(least_pairs=1), of_legs())) == 1
+    assert len(found_in(tree, WideBordersSettings(least_pairs=1), of_legs())) == 1
 
 
 def test_how_much_wider_the_border_is() -> None:
     _, tree = seen("left")
     ratio = tree.radius[thigh(tree, "left")] / tree.radius[thigh(tree, "right")]
-    assert found_in(tree, UnlikeBordersSettings(wider=1.01 * ratio)) == []
-    assert len(found_in(tree, UnlikeBordersSettings(wider=0.99 * ratio))) == 1
+    assert found_in(tree, WideBordersSettings(wider=1.01 * ratio)) == []
+    assert len(found_in(tree, WideBordersSettings(wider=0.99 * ratio))) == 1
 
 
 def test_it_ends_where_the_border_is_as_wide_as_the_other_one() -> None:
     _, tree = seen("left")
-    lost = [len(found_in(tree, UnlikeBordersSettings(alike=alike))[0].vertex) for alike in (1.4, 1.15, 1.05)]
+    lost = [len(found_in(tree, WideBordersSettings(alike=alike))[0].vertex) for alike in (1.4, 1.15, 1.05)]
     assert lost[0] < lost[1] <= lost[2]
-    assert found_in(tree, UnlikeBordersSettings(alike=0.1)) == []
+    assert found_in(tree, WideBordersSettings(alike=0.1)) == []
 
 
 def test_too_few_vertices_are_none() -> None:
     _, tree = seen("left")
     count = len(found_in(tree)[0].vertex)
-    assert len(found_in(tree, UnlikeBordersSettings(least_vertices=count))) == 1
-    assert found_in(tree, UnlikeBordersSettings(least_vertices=count + 1)) == []
+    assert len(found_in(tree, WideBordersSettings(least_vertices=count))) == 1
+    assert found_in(tree, WideBordersSettings(least_vertices=count + 1)) == []
 
 
 def test_something_is_left_of_the_part() -> None:
@@ -105,8 +105,8 @@ def test_something_is_left_of_the_part() -> None:
     whole = {"pelvis": 0, "left thigh": 1, "left shank": 1, "right thigh": 2, "right shank": 2, "chest": 3}
     _, tree = seen("left", parts=whole)
     assert len(found_in(tree)) == 1
-    assert len(found_in(tree, UnlikeBordersSettings(alike=0.3, least_vertices=1))) == 1
-    assert found_in(tree, UnlikeBordersSettings(alike=0.3, least_vertices=60)) == []
+    assert len(found_in(tree, WideBordersSettings(alike=0.3, least_vertices=1))) == 1
+    assert found_in(tree, WideBordersSettings(alike=0.3, least_vertices=60)) == []
 
 
 def test_limbs_whose_thighs_touch_have_none() -> None:
@@ -130,7 +130,7 @@ def test_flesh_ends_a_radius_before_the_next_joint(radius: float, lowest: float,
         return met._replace(radius=np.full_like(met.radius, np.inf))
 
     monkeypatch.setattr(numerics, "borders", tried_with)
-    assert len(numerics._flesh(V, F, rooted(tree), limbs.one, away, radius, UnlikeBordersSettings())) == 0
+    assert len(numerics._flesh(V, F, rooted(tree), limbs.one, away, radius, WideBordersSettings())) == 0
     least = float(limbs.one.level[-2]) + radius
     assert min(tried) >= max(least - 1.0, lowest)
     assert (min(tried) < least + 1.0) == (lowest == 0.0)
@@ -143,7 +143,7 @@ def test_flesh_hangs_together_with_the_trunk() -> None:
     assert tree.label[np.argmax(V[:, 0])] != tree.parents[left]
     far = (V[:, 0] > 20.0) & (V[:, 1] > 0.0)
     sleeve = rooted(tree._replace(label=np.where(far, left, tree.label)))
-    assert unlike_borders(V, F, sleeve, pairs(), np.inf) == []
+    assert wide_borders(V, F, sleeve, pairs(), np.inf) == []
 
 
 def test_part_that_no_path_reaches_has_none() -> None:
@@ -151,7 +151,7 @@ def test_part_that_no_path_reaches_has_none() -> None:
     (limbs, _) = numerics.mirrored_limbs(F, rooted(tree), pairs())
     away = np.full(len(V), np.inf)
     for limb in (limbs.one, limbs.one._replace(part=limbs.one.part[-1:], level=limbs.one.level[-1:])):
-        assert len(numerics._flesh(V, F, rooted(tree), limb, away, 4.0, UnlikeBordersSettings())) == 0
+        assert len(numerics._flesh(V, F, rooted(tree), limb, away, 4.0, WideBordersSettings())) == 0
 
 
 def test_partners_are_those_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -159,7 +159,7 @@ def test_partners_are_those_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None
     given: list[float] = []
     real = numerics.mirrored_limbs
     monkeypatch.setattr(numerics, "mirrored_limbs", lambda *of: given.append(of[-1]) or real(*of))
-    unlike_borders(V, F, rooted(tree), pairs(), 1.75)
+    wide_borders(V, F, rooted(tree), pairs(), 1.75)
     assert given == [1.75]
 
 
