@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from fleshy_legs import flesh_of, pairs, rooted, seen, thigh
+from fleshy_legs import OUTSIDE, flesh_of, pairs, rooted, seen, thigh
 from legs import ALONG, LEGS, F, V, of_legs
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
@@ -109,11 +109,48 @@ def test_something_is_left_of_the_part() -> None:
     assert found_in(tree, WideBordersSettings(alike=0.3, least_vertices=60)) == []
 
 
-def test_limbs_whose_thighs_touch_have_none() -> None:
-    """Either may hold the pelvis."""
-    _, tree = seen("left")
+def touching(*sides: str) -> FirstTree:
+    """The legs with the pelvis in the thighs of these sides, half of it in each of two."""
+    _, tree = seen()
     near = (tree.label == tree.parents[thigh(tree, "left")]) & (V[:, 0] < 3.0)
-    assert found_in(tree._replace(label=np.where(near, thigh(tree, "right"), tree.label))) == []
+    of = {side: near & ((OUTSIDE[side] > 0.0) | (len(sides) < 2)) for side in sides}
+    label = tree.label.copy()
+    for side, own in of.items():
+        label[own] = thigh(tree, side)
+    return tree._replace(label=label)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_of_thighs_that_touch_the_one_that_begins_farther_from_its_end_holds_the_pelvis(side: str) -> None:
+    tree = touching(side)
+    (one,) = found_in(tree)
+    assert one.part == thigh(tree, side)
+    (limbs, _) = numerics.mirrored_limbs(F, rooted(tree), pairs())
+    row = [*LEGS].index(side)
+    levels = [limb.level[-1] for limb in (limbs.one, limbs.other)]
+    away = of_legs().distance[0, row]
+    assert levels[row] == max(levels)
+    assert away[one.vertex].min() > np.mean(levels)
+    lost = [len(found_in(tree, WideBordersSettings(of_way=way))[0].vertex) for way in (0.2, 0.5, 1.0)]
+    assert lost[0] < lost[1] < lost[2]
+
+
+def test_how_much_farther_it_begins() -> None:
+    tree = touching("left")
+    (limbs, _) = numerics.mirrored_limbs(F, rooted(tree), pairs())
+    least = min(float(tree.radius[limb.part[-1]]) for limb in (limbs.one, limbs.other))
+    deeper = abs(limbs.one.level[-1] - limbs.other.level[-1]) / least
+    assert len(found_in(tree, WideBordersSettings(deeper=0.99 * deeper))) == 1
+    assert found_in(tree, WideBordersSettings(deeper=1.01 * deeper)) == []
+
+
+def test_thighs_that_touch_and_begin_alike_have_none() -> None:
+    assert found_in(touching("left", "right")) == []
+
+
+def test_of_a_thigh_that_touches_the_other_a_wide_border_says_nothing() -> None:
+    """Either may hold the pelvis."""
+    assert found_in(touching("left"), WideBordersSettings(wider=0.0, deeper=np.inf)) == []
 
 
 @pytest.mark.parametrize(("radius", "lowest"), [(2.0, 0.0), (6.0, 0.0), (99.0, np.inf)])
