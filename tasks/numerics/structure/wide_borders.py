@@ -123,7 +123,8 @@ def _held(
     level = [float(limb.level[-1]) for limb in both]
     side, least = int(np.argmax(level)), min(float(parts.radius[limb.part[-1]]) for limb in both)
     if chosen.deeper * least <= level[side] - min(level) < np.inf:
-        yield side, _beyond(F, parts, both[side], away[side], level[side] - chosen.of_way * (level[side] - min(level)))
+        inner = _Innermost.of(F, parts, both[side], away[side])
+        yield side, np.flatnonzero(inner.beyond(level[side] - chosen.of_way * (level[side] - min(level))))
 
 
 def _too_wide(radius: Floats, limbs: MirroredLimbs, chosen: WideBordersSettings) -> list[tuple[int, float]]:
@@ -159,33 +160,41 @@ def _flesh(V: Floats, F: Ints, parts: RootedParts, limb: Limb, away: Floats, mos
     away : (vertex,) from the end of the limb, mesh unit
     most : radius of the border, mesh unit
     """
-    part, is_limb = int(limb.part[-1]), np.isin(parts.place, limb.part)
-    is_own = (parts.place == part) & np.isfinite(away)
-    if not is_own.any():
+    inner, is_limb = _Innermost.of(F, parts, limb, away), np.isin(parts.place, limb.part)
+    if not inner.is_own.any():
         return np.zeros(0, np.int64)
-    edge, trunk = ring_edges(*rings(F, len(V))), parts.place == parts.parents[part]
-    lowest = limb.level[-2] + most if len(limb.part) > 1 else float(away[is_own].min())
+    lowest = limb.level[-2] + most if len(limb.part) > 1 else float(away[inner.is_own].min())
     for level in np.linspace(limb.level[-1], lowest, chosen.places) if lowest < limb.level[-1] else ():
-        lost = _joined_to(edge, trunk, is_own & (away > level))
+        lost = inner.beyond(level)
         met = borders(V, F, (is_limb & ~lost).astype(np.int64))
         if len(met.radius) and met.radius[0] <= most:
             return np.flatnonzero(lost)
     return np.zeros(0, np.int64)
 
 
-def _beyond(F: Ints, parts: RootedParts, limb: Limb, away: Floats, level: float) -> Ints:
-    """(own,) the vertices of a limb's innermost part that lie farther from its end and hang together with the trunk.
+class _Innermost(NamedTuple):
+    """The part of a limb that hangs on the trunk.
 
-    away : (vertex,) from the end of the limb, mesh unit
+    is_own   : (vertex,) on this part, where a path leads to the limb's end
+    is_trunk : (vertex,) on the part that it hangs on
+    away     : (vertex,) from the end of the limb, mesh unit
+    edge     : (edge, 2) of the reference, both ways
     """
-    part = int(limb.part[-1])
-    is_own = (parts.place == part) & np.isfinite(away)
-    trunk = parts.place == parts.parents[part]
-    return np.flatnonzero(_joined_to(ring_edges(*rings(F, len(parts.place))), trunk, is_own & (away > level)))
 
+    is_own: Flags
+    is_trunk: Flags
+    away: Floats
+    edge: Ints
 
-def _joined_to(edge: Ints, trunk: Flags, some: Flags) -> Flags:
-    """(vertex,) those of some vertices from which a path over these leads to the trunk; edge (edge, 2) both ways."""
-    a, b = edge[(some | trunk)[edge].all(axis=1)].T
-    piece = connected_components(coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(len(some), len(some))))[1]
-    return some & np.isin(piece, piece[trunk])
+    @classmethod
+    def of(cls, F: Ints, parts: RootedParts, limb: Limb, away: Floats) -> "_Innermost":
+        part = int(limb.part[-1])
+        is_own, is_trunk = (parts.place == part) & np.isfinite(away), parts.place == parts.parents[part]
+        return cls(is_own, is_trunk, away, ring_edges(*rings(F, len(parts.place))))
+
+    def beyond(self, level: float) -> Flags:
+        """(vertex,) its own that lie farther from the limb's end and from which a path over these leads to the trunk."""
+        some = self.is_own & (self.away > level)
+        a, b = self.edge[(some | self.is_trunk)[self.edge].all(axis=1)].T
+        piece = connected_components(coo_array((np.ones(len(a), np.bool_), (a, b)), shape=(len(some), len(some))))[1]
+        return some & np.isin(piece, piece[self.is_trunk])
