@@ -66,6 +66,15 @@ def test_contact_beside_a_frame_says_nothing_where_the_pose_is_another():
     assert (found.frame, found.free) == (1, True)
 
 
+@pytest.mark.parametrize(("angle", "counts"), [(0.01, True), (1.0, False)])
+def test_contact_beside_a_frame_counts_where_the_body_hardly_moves(angle, counts):
+    """Though most other pairs of frames are more alike than it and its neighbours."""
+    bent = np.zeros(10)
+    bent[1] = angle
+    free, touching = (reference([first] + [5] * 9, [2] * 10, [1.0] * 10, limbs=limb(bent, length=0.5)) for first in (5, 4))
+    assert (free.score - touching.score > 0.9).tolist() == [True, counts, True] + [False] * 7
+
+
 def test_a_frame_of_another_body_is_neither_chosen_nor_the_measure_of_the_others():
     leaves, area = [5, 5, 5, 5, 8, 5, 5, 5, 5, 5, 5, 5], [1.0] * 4 + [2.0] + [1.0] * 7
     found = reference(leaves, [2] * 12, area, poses([0, 0.1, 0, 0.1, 50, 0, 0.1, 0, 0.1, 0, 0.1, 0]))
