@@ -52,9 +52,15 @@ class MirroredSlicesSettings(NamedTuple):
     opposed: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 5.2)
     """Of parts that touch each other and move as two, as flesh of two thighs does and halves of a pelvis do not; they may be as
     short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
-    as_one: float = 2.5
-    """What one motion leaves of both parts, in what a motion of its own leaves of each, from which on they move as two. Those
+    united: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 3.6)
+    """Of parts that touch each other and move as one, as flesh around a pelvis does that bends where the spine does. Person 684,
+    who runs, and human 14 have such parts, with lengths of 0.6 to 1.1 and mixtures of 1.7 to 3.3."""
+    as_two: float = 2.5
+    """What one motion leaves of both parts, in what a motion of its own leaves of each, above which they move as two. Those
     runners have 3.1 and 3.7, links from the pelvis to both hips of the dance 1.7 to 2.0."""
+    as_one: float = 1.5
+    """The same, below which they move as one. Person 684 and human 14 have 1.3; of the other 200 runs no parts as short have
+    less than 2.2."""
     length_within: float = 2.6
     """Length of a part farther out, at most, in radii. Of people 545 to 569, 1, 8, 12, humans, four-legged and random trees 0
     to 9 and of wave, dance and wolf (every fourth frame), two slices have 0.6 and 2.6, and mixtures of 2.2 and 2.4. Of true
@@ -112,9 +118,7 @@ def mirrored_slices(
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
         touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
-        limits = chosen.touching if touch else chosen.apart
-        if touch and _move_as_two(body, tree, limbs, confidence, chosen):
-            limits = chosen.opposed
+        limits = _of_touching(_left_by_one(body, tree, limbs, confidence), chosen) if touch else chosen.apart
         for short in (_both(tree, limbs, limits), [] if touch else _one(tree, limbs, limits, chosen)):
             slices = [slice_between(body, tree, *limb.part[-2:].tolist()) for limb in short]
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
@@ -127,10 +131,15 @@ def mirrored_slices(
     return [found[part] for part in sorted(found)]
 
 
-def _move_as_two(
-    body: MovingSurface, tree: FirstTree, limbs: MirroredLimbs, confidence: Floats, chosen: MirroredSlicesSettings
-) -> bool:
-    """Whether one motion leaves far more of the innermost parts of both limbs than a motion for each."""
+def _of_touching(left: float, chosen: MirroredSlicesSettings) -> SliceLimits:
+    """What slices that touch each other are at most; left see `_left_by_one`."""
+    if left > chosen.as_two:
+        return chosen.opposed
+    return chosen.united if left < chosen.as_one else chosen.touching
+
+
+def _left_by_one(body: MovingSurface, tree: FirstTree, limbs: MirroredLimbs, confidence: Floats) -> float:
+    """What one motion leaves of the innermost parts of both limbs, in what a motion of its own leaves of each."""
     sides = np.array([limbs.one.part[-1], limbs.other.part[-1]])
     own = np.flatnonzero(np.isin(tree.label, sides))
     V, x, area = (np.ascontiguousarray(a, np.float64) for a in (body.V[own], body.x[:, own], body.area[own]))
@@ -142,7 +151,8 @@ def _move_as_two(
         fit(V, x, weight, area, label, np.ones(count, np.bool_), False, len(own), FIT_FLOOR * body.size**2, R, t)
         square = (residuals(V, x, weight * area, R, t, label) ** 2).mean(axis=0)
         left.append(float(np.sqrt(square @ np.bincount(label, area) / area.sum())))
-    return left[0] > chosen.as_one * max(left[1], 1e-6 * body.size)
+    one, two = np.maximum(left, 1e-6 * body.size)
+    return float(one / two)
 
 
 def _within(

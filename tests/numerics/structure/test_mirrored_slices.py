@@ -183,9 +183,11 @@ def test_limits(
     count: int,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Of the part on the right, which is one with the thigh, and of that on the left; they touch if they begin at the fork."""
+    """Of the part on the right, which is one with the thigh, and of that on the left; they touch if they begin at the fork,
+    and move neither as one nor as two."""
     body, tree = seen(flesh_of=("left",), limb_of=("right",), inner=inner)
     right = int(tree.label[np.argmin(np.where(tree.label > 0, np.abs(ALONG["right"] - OUTER), np.inf))])
+    monkeypatch.setattr(numerics, "_left_by_one", lambda *of: 2.0)
     monkeypatch.setattr(numerics, "_length", lambda _, limb: lengths[int(limb.part[-1] != right)])
     monkeypatch.setattr(numerics, "_mixture", lambda _body, _tree, one, _trust: mixtures[int(one.part != right)])
     assert len(found_in((body, tree))) == count
@@ -236,7 +238,7 @@ def test_parts_that_touch_each_other_have_limits_of_their_own() -> None:
     touching, apart = seen(inner=0.0), seen()
     wide, none = SliceLimits(0.0, 99.0, 99.0, 99.0), SliceLimits(0.0, 0.0, 0.0, 0.0)
     for beside, away, counts in ((wide, none, (2, 0)), (none, wide, (0, 2))):
-        settings = MirroredSlicesSettings(touching=beside, apart=away)
+        settings = MirroredSlicesSettings(touching=beside, apart=away, as_one=0.0)
         assert tuple(len(found_in(there, settings)) for there in (touching, apart)) == counts
 
 
@@ -395,19 +397,46 @@ def of_halves(together: float) -> tuple[MovingSurface, FirstTree]:
     return body._replace(x=x), tree
 
 
-@pytest.mark.parametrize(("together", "two"), [(0.0, True), (1.0, False)])
-def test_whether_halves_move_as_two(together: float, two: bool) -> None:
-    body, tree = of_halves(together)
+def left_by_one(body: MovingSurface, tree: FirstTree, trust: Floats = ONES) -> float:
     (limbs,) = numerics.mirrored_limbs(F, RootedParts(tree.label, tree.parents, tree.radius), of_legs(), PAIRED)
-    assert numerics._move_as_two(body, tree, limbs, ONES, MirroredSlicesSettings(as_one=1.5)) == two
-    assert not numerics._move_as_two(body, tree, limbs, ONES, MirroredSlicesSettings(as_one=np.inf))
+    return numerics._left_by_one(body, tree, limbs, trust)
 
 
-@pytest.mark.parametrize(("limit", "count"), [(1.5, 2), (np.inf, 0)])
-def test_halves_that_move_as_two_have_limits_of_their_own_and_may_be_short(limit: float, count: int) -> None:
-    none = SliceLimits(0.0, 0.0, 0.0, 0.0)
-    settings = MirroredSlicesSettings(touching=none, apart=none, opposed=SliceLimits(0.0, 9.0, 9.0, np.inf), as_one=limit)
-    assert len(found_in(of_halves(0.0), settings)) == count
+def test_how_much_halves_move_as_one() -> None:
+    left = [left_by_one(*of_halves(together)) for together in (0.0, 0.9, 1.0)]
+    assert left[0] > 2.5
+    assert left[1] > 1.5
+    assert left[2] == 1.0
+
+
+def test_what_is_left_of_halves_that_are_rigid_is_none() -> None:
+    """By rounding one of two motions that leave nothing may leave any number of times as much."""
+    body, tree = of_halves(1.0)
+    noisy = body.x + 1e-9 * np.random.default_rng(0).normal(size=body.x.shape)
+    assert left_by_one(body._replace(x=noisy), tree) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("left", "counts"), [(1.4, (0, 0, 2)), (1.6, (0, 2, 0)), (2.4, (0, 2, 0)), (2.6, (2, 0, 0)), (3.0, (2, 0, 0))]
+)
+def test_halves_have_limits_by_whether_they_move_as_one_or_as_two(
+    left: float, counts: Sequence[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those that move as neither may be links from a pelvis to hips."""
+    monkeypatch.setattr(numerics, "_left_by_one", lambda *of: left)
+    wide, none = SliceLimits(0.0, 9.0, 9.0, np.inf), SliceLimits(0.0, 0.0, 0.0, 0.0)
+    nothing = MirroredSlicesSettings(touching=none, apart=none, opposed=none, united=none)
+    for kind, count in zip(("opposed", "touching", "united"), counts, strict=True):
+        assert len(found_in(of_halves(0.0), nothing._replace(**{kind: wide}))) == count
+
+
+@pytest.mark.parametrize(("left", "count"), [(1.4, 2), (1.6, 0), (2.6, 2)])
+def test_halves_that_move_as_one_or_as_two_may_be_short(left: float, count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    lengths, there = iter((0.6, 1.1)), of_halves(0.0)
+    monkeypatch.setattr(numerics, "_left_by_one", lambda *of: left)
+    monkeypatch.setattr(numerics, "_length", lambda *of: next(lengths))
+    monkeypatch.setattr(numerics, "_mixture", lambda *of: 3.5)
+    assert len(found_in(there)) == count
 
 
 def test_uncertain_vertices_do_not_say_that_halves_move_as_two() -> None:
@@ -415,5 +444,4 @@ def test_uncertain_vertices_do_not_say_that_halves_move_as_two() -> None:
     x, trust = body.x.copy(), ONES.copy()
     x[::2] += np.random.default_rng(0).normal(0.0, 5.0, x[::2].shape)
     trust[::2] = 0.0
-    (limbs,) = numerics.mirrored_limbs(F, RootedParts(tree.label, tree.parents, tree.radius), of_legs(), PAIRED)
-    assert not numerics._move_as_two(body._replace(x=x), tree, limbs, trust, MirroredSlicesSettings(as_one=1.5))
+    assert left_by_one(body._replace(x=x), tree, trust) < 1.5
