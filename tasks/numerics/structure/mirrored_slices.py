@@ -53,8 +53,8 @@ class MirroredSlicesSettings(NamedTuple):
     """Of parts that touch each other and move as two, as flesh of two thighs does and halves of a pelvis do not; they may be as
     short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
     united: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 3.6)
-    """Of parts that touch each other and move as one, as flesh around a pelvis does that bends where the spine does. Person 684,
-    who runs, and human 14 have such parts, with lengths of 0.6 to 1.1 and mixtures of 1.7 to 3.3."""
+    """Of parts that touch each other and move as one, as flesh around a pelvis does. Person 684, who runs, and human 14 have
+    such parts, with lengths of 0.6 to 1.1 and mixtures of 1.7 to 3.3."""
     as_two: float = 2.5
     """What one motion leaves of both parts, in what a motion of its own leaves of each, above which they move as two. Those
     runners have 3.1 and 3.7, links from the pelvis to both hips of the dance 1.7 to 2.0."""

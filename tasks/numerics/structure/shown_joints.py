@@ -134,7 +134,7 @@ def _with_shown_joints(
     The trunk is asked once more with rings that lie closer together: between those of `end_rings` a joint may be missed, and a
     part that one joint divides may hold two.
     """
-    chosen, mirrored = EndJointsSettings(), of_mirrored_limbs(tree, pairs)
+    chosen, mirrored = _settings(tree, pairs), of_mirrored_limbs(tree, pairs)
     rings, frames = all_end_rings(body.V, body.F, body.area, tree, pairs), evidence.frames(body, tree)
     fits = known.laid(frames, judged_runs(len(body.x), body.takes, chosen), rings)
     ends = np.unique(tree.label[pairs.tip])
@@ -158,13 +158,13 @@ def _with_closer_joints(
     own   : (own,) vertices whose parts are asked first, with those beside them
     stays : whether these are asked always, and nothing else
     """
-    chosen = EndJointsSettings()
-    closer = chosen._replace(evident=chosen.evident._replace(least_apart=chosen.evident.least_apart_if_closer))
-    runs = judged_runs(len(body.x), body.takes, chosen)
+    runs = judged_runs(len(body.x), body.takes, EndJointsSettings())
     while True:
         if found:
             tree = extended_tree(body, tree, found, evidence.confidence, evidence.noise)
             body = tree.with_ends(body)
+        chosen = _settings(tree, pairs)
+        closer = chosen._replace(evident=chosen.evident._replace(least_apart=chosen.evident.least_apart_if_closer))
         mirrored, frames = of_mirrored_limbs(tree, pairs), evidence.frames(body, tree)
         parts = np.unique(tree.label[own])
         asked = parts.tolist() if stays else _with_neighbours(tree, parts)
@@ -175,6 +175,14 @@ def _with_closer_joints(
             return tree
         if not stays:
             own = np.concatenate([one.cut.own for one in found])
+
+
+def _settings(tree: FirstTree, pairs: LimbPairs) -> EndJointsSettings:
+    """What rings must show: across a trunk that has two joints between pairs of limbs, more."""
+    chosen = EndJointsSettings()
+    if len(joints_between_pairs(rooted(tree), pairs)) < 2:
+        return chosen
+    return chosen._replace(evident=chosen.evident._replace(least_score_in_trunk=chosen.evident.least_score_if_divided))
 
 
 def _with_neighbours(tree: FirstTree, parts: Ints) -> Collection[int]:

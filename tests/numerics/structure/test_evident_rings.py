@@ -94,6 +94,12 @@ def test_one_limb_that_shows_enough_shows_both(scores: tuple[float, float], join
     assert len(found(limbs(scores))) == joints
 
 
+def test_what_limbs_must_show_is_not_what_the_trunk_must() -> None:
+    across = limbs((ENOUGH, 0.0))
+    assert len(found(across, least_score_in_trunk=9.0)) == 2
+    assert len(found(across, least_score_across_limbs=9.0)) == 0
+
+
 def test_the_clearer_limb_comes_last() -> None:
     """The frames' poses of what both hang on are those that it shows."""
     assert list(found(limbs((0.2, 0.1)))) == [1, 0]

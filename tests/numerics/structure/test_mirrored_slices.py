@@ -184,7 +184,8 @@ def test_limits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Of the part on the right, which is one with the thigh, and of that on the left; they touch if they begin at the fork,
-    and move neither as one nor as two."""
+    and move neither as one nor as two.
+    """
     body, tree = seen(flesh_of=("left",), limb_of=("right",), inner=inner)
     right = int(tree.label[np.argmin(np.where(tree.label > 0, np.abs(ALONG["right"] - OUTER), np.inf))])
     monkeypatch.setattr(numerics, "_left_by_one", lambda *of: 2.0)

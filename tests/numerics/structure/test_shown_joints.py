@@ -84,6 +84,31 @@ def test_pieces_of_a_trunk_that_bends_at_one_place_stay_one() -> None:
     assert len(of_bent_trunk((0.0,))[1].shown) == 1
 
 
+@pytest.mark.parametrize(("joints", "is_divided"), [(0, False), (1, False), (2, True), (3, True)])
+def test_a_trunk_with_two_joints_must_show_more(joints: int, is_divided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    body, tree = trunk(bending((0.0,)))
+    monkeypatch.setattr(numerics, "joints_between_pairs", lambda *of: np.arange(joints))
+    usual, found = EndJointsSettings(), numerics._settings(tree, two_pairs(body))
+    more = usual.evident._replace(least_score_in_trunk=usual.evident.least_score_if_divided)
+    assert found == (usual._replace(evident=more) if is_divided else usual)
+
+
+def test_what_a_trunk_must_show_is_asked_anew_once_it_is_divided(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = EndJointsSettings()
+    much = usual._replace(evident=usual.evident._replace(least_score_in_trunk=9.0))
+    for divided, count in ((usual, 2), (much, 1)):
+        asked: list[int] = []
+        monkeypatch.setattr(
+            numerics,
+            "_settings",
+            lambda tree, _, asked=asked, divided=divided: (
+                asked.append(len(tree.parents)) or (divided if len(tree.parents) > 4 else usual)
+            ),
+        )
+        assert len(of_bent_trunk((-1.6, 1.1))[1].shown) == count
+        assert {*asked} == {*range(4, 5 + count)}
+
+
 def bending(hidden: tuple[float, ...]) -> np.ndarray:
     """(frame, part, 3, 3) every hidden joint swings by itself; the last part too."""
     turn = swings(24, len(hidden) + 2, 20.0, axes=1, seed=1)
