@@ -32,7 +32,7 @@ class EvidentRingsSettings(NamedTuple):
     """The same across the trunk. Of 0.04, 0.05 and 0.06 chosen on 132 bodies (RESULTS, "The limit of rings across the trunk"):
     against 0.06 four more joints are found with 0.05 and none is false, with 0.04 three more yet, and five are false."""
     least_score_if_divided: float = 0.066
-    """The same across a trunk with two joints and more between pairs of limbs. There true ones of 125 people, generated and
+    """The same across a trunk with two joints and more between pairs of limbs. There true ones of 115 people, generated and
     recorded bodies have 0.071 and more, three false ones 0.056 to 0.062; where the trunk has fewer, seven true ones have 0.051
     to 0.062."""
     least_score_across_limbs: float = 0.05
