@@ -52,15 +52,16 @@ class MirroredSlicesSettings(NamedTuple):
     opposed: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 5.2)
     """Of parts that touch each other and move as two, as flesh of two thighs does and halves of a pelvis do not; they may be as
     short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
-    united: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 3.6)
-    """Of parts that touch each other and move as one, as flesh around a pelvis does. Person 684, who runs, and human 14 have
-    such parts, with lengths of 0.6 to 1.1 and mixtures of 1.7 to 3.3."""
+    unequal: SliceLimits = SliceLimits(0.0, 1.2, np.inf, 3.6)
+    """Of parts that touch each other, do not move as two, and are not as long as each other, as bones of both limbs are. People
+    628, 684 and 692, who run, and human 14 have such flesh about a pelvis, with lengths of 0.3 to 1.14 and mixtures of 1.2 to
+    3.3; one side of people 4 and 88 is the pelvis itself, with lengths of 1.9 and 2.1."""
+    longer_of_unequal: float = 1.4
+    """Length of one in that of the other from which on they are not as long as each other. Such flesh has 1.6 to 2.9, links
+    from the pelvis to both hips of the dance 1.2."""
     as_two: float = 2.5
     """What one motion leaves of both parts, in what a motion of its own leaves of each, above which they move as two. Those
-    runners have 3.1 and 3.7, links from the pelvis to both hips of the dance 1.7 to 2.0."""
-    as_one: float = 1.5
-    """The same, below which they move as one. Person 684 and human 14 have 1.3; of the other 200 runs no parts as short have
-    less than 2.2."""
+    two runners have 3.1 and 3.7, links from the pelvis to both hips of the dance 1.7 to 2.0."""
     length_within: float = 2.6
     """Length of a part farther out, at most, in radii. Of people 545 to 569, 1, 8, 12, humans, four-legged and random trees 0
     to 9 and of wave, dance and wolf (every fourth frame), two slices have 0.6 and 2.6, and mixtures of 2.2 and 2.4. Of true
@@ -118,7 +119,7 @@ def mirrored_slices(
         if not len(limbs.one.part) or not len(limbs.other.part):
             continue
         touch = parts_touch(body.F, tree.label, int(limbs.one.part[-1]), int(limbs.other.part[-1]))
-        limits = _of_touching(_left_by_one(body, tree, limbs, confidence), chosen) if touch else chosen.apart
+        limits = _of_touching(body, tree, limbs, confidence, chosen) if touch else chosen.apart
         for short in (_both(tree, limbs, limits), [] if touch else _one(tree, limbs, limits, chosen)):
             slices = [slice_between(body, tree, *limb.part[-2:].tolist()) for limb in short]
             if slices and all(_mixture(body, tree, each, confidence) <= limits.mixture for each in slices):
@@ -131,11 +132,15 @@ def mirrored_slices(
     return [found[part] for part in sorted(found)]
 
 
-def _of_touching(left: float, chosen: MirroredSlicesSettings) -> SliceLimits:
-    """What slices that touch each other are at most; left see `_left_by_one`."""
-    if left > chosen.as_two:
+def _of_touching(
+    body: MovingSurface, tree: FirstTree, limbs: MirroredLimbs, confidence: Floats, chosen: MirroredSlicesSettings
+) -> SliceLimits:
+    """What slices of both limbs are at most, where their innermost parts touch each other."""
+    if _left_by_one(body, tree, limbs, confidence) > chosen.as_two:
         return chosen.opposed
-    return chosen.united if left < chosen.as_one else chosen.touching
+    short, long = sorted(_length(tree, limb) for limb in limbs[:2])
+    is_unequal = chosen.longer_of_unequal * short <= long <= chosen.unequal.length
+    return chosen.unequal if is_unequal else chosen.touching
 
 
 def _left_by_one(body: MovingSurface, tree: FirstTree, limbs: MirroredLimbs, confidence: Floats) -> float:

@@ -174,6 +174,11 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
         ((2.1, 1.5), (3.7, 3.5), 0.0, 0),
         ((2.3, 1.6), (3.5, 3.5), 0.0, 0),
         ((2.1, 1.3), (3.5, 3.5), 0.0, 0),
+        ((1.1, 0.7), (3.5, 3.5), 0.0, 2),
+        ((1.1, 0.1), (3.5, 3.5), 0.0, 2),
+        ((1.1, 0.85), (3.5, 3.5), 0.0, 0),
+        ((1.25, 0.8), (3.5, 3.5), 0.0, 0),
+        ((1.1, 0.7), (3.7, 3.5), 0.0, 0),
     ],
 )
 def test_limits(
@@ -184,7 +189,7 @@ def test_limits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Of the part on the right, which is one with the thigh, and of that on the left; they touch if they begin at the fork,
-    and move neither as one nor as two.
+    and do not move as two.
     """
     body, tree = seen(flesh_of=("left",), limb_of=("right",), inner=inner)
     right = int(tree.label[np.argmin(np.where(tree.label > 0, np.abs(ALONG["right"] - OUTER), np.inf))])
@@ -239,7 +244,7 @@ def test_parts_that_touch_each_other_have_limits_of_their_own() -> None:
     touching, apart = seen(inner=0.0), seen()
     wide, none = SliceLimits(0.0, 99.0, 99.0, 99.0), SliceLimits(0.0, 0.0, 0.0, 0.0)
     for beside, away, counts in ((wide, none, (2, 0)), (none, wide, (0, 2))):
-        settings = MirroredSlicesSettings(touching=beside, apart=away, as_one=0.0)
+        settings = MirroredSlicesSettings(touching=beside, apart=away, longer_of_unequal=np.inf)
         assert tuple(len(found_in(there, settings)) for there in (touching, apart)) == counts
 
 
@@ -418,26 +423,27 @@ def test_what_is_left_of_halves_that_are_rigid_is_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("left", "counts"), [(1.4, (0, 0, 2)), (1.6, (0, 2, 0)), (2.4, (0, 2, 0)), (2.6, (2, 0, 0)), (3.0, (2, 0, 0))]
+    ("left", "lengths", "counts"),
+    [
+        (2.4, (0.6, 1.1), (0, 0, 2)),
+        (2.4, (1.0, 1.1), (0, 2, 0)),
+        (2.4, (0.6, 1.3), (0, 2, 0)),
+        (2.6, (0.6, 1.1), (2, 0, 0)),
+        (2.6, (1.0, 1.1), (2, 0, 0)),
+    ],
 )
-def test_halves_have_limits_by_whether_they_move_as_one_or_as_two(
-    left: float, counts: Sequence[int], monkeypatch: pytest.MonkeyPatch
+def test_halves_have_limits_by_whether_they_move_as_two_and_are_as_long(
+    left: float, lengths: tuple[float, float], counts: Sequence[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Those that move as neither may be links from a pelvis to hips."""
+    """Those that are as long as each other and do not move as two may be links from a pelvis to hips."""
+    body, tree = of_halves(0.0)
+    first = int(np.flatnonzero(tree.parents == 0)[0])
     monkeypatch.setattr(numerics, "_left_by_one", lambda *of: left)
-    wide, none = SliceLimits(0.0, 9.0, 9.0, np.inf), SliceLimits(0.0, 0.0, 0.0, 0.0)
-    nothing = MirroredSlicesSettings(touching=none, apart=none, opposed=none, united=none)
-    for kind, count in zip(("opposed", "touching", "united"), counts, strict=True):
-        assert len(found_in(of_halves(0.0), nothing._replace(**{kind: wide}))) == count
-
-
-@pytest.mark.parametrize(("left", "count"), [(1.4, 2), (1.6, 0), (2.6, 2)])
-def test_halves_that_move_as_one_or_as_two_may_be_short(left: float, count: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    lengths, there = iter((0.6, 1.1)), of_halves(0.0)
-    monkeypatch.setattr(numerics, "_left_by_one", lambda *of: left)
-    monkeypatch.setattr(numerics, "_length", lambda *of: next(lengths))
-    monkeypatch.setattr(numerics, "_mixture", lambda *of: 3.5)
-    assert len(found_in(there)) == count
+    monkeypatch.setattr(numerics, "_length", lambda _, limb: lengths[int(limb.part[-1] == first)])
+    wide, short, none = (SliceLimits(0.0, length, 9.0, np.inf) for length in (9.0, 1.2, 0.0))
+    nothing = MirroredSlicesSettings(touching=none, apart=none, opposed=none, unequal=short._replace(mixture=0.0))
+    for kind, limits, count in zip(("opposed", "touching", "unequal"), (wide, wide, short), counts, strict=True):
+        assert len(found_in((body, tree), nothing._replace(**{kind: limits}))) == count
 
 
 def test_uncertain_vertices_do_not_say_that_halves_move_as_two() -> None:
