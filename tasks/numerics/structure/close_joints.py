@@ -13,12 +13,12 @@ from kinetree.tasks.numerics.structure.surface_evidence import of_mirrored_limbs
 
 CLOSE = 1.0
 """Distance of a joint from one of the trunk that the surfaces show, in radii of the smaller border, below which they are asked
-without it. Four false joints lie at 0.65 to 0.79; a true one of the ballet, whose spine bends everywhere, lies at 1.2 and
+without it. Three false joints lie at 0.68 to 0.79; a true one of the ballet, whose spine bends everywhere, lies at 1.2 and
 would go. Chosen on people 545 to 569, 1, 8 and 12, generated bodies 0 to 9 and recorded ones; see RESULTS."""
 
-AS_WELL = 1.25
+AS_WELL = 1.18
 """What the motions of the trunk's parts leave unexplained without such a joint, in what they leave with it, at most. Chosen on
-the same bodies and person 671: those three have 1.00 to 1.12, that one 1.23, true ones as close 1.28 to 1.7."""
+the same bodies: those three have 1.00 to 1.12, true ones as close 1.28 to 1.7; of others a false one 1.23, a true one 1.24."""
 
 
 def close_joints(tree: FirstTree, extended: FirstTree, pairs: LimbPairs) -> list[int]:

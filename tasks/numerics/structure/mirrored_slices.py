@@ -54,14 +54,15 @@ class MirroredSlicesSettings(NamedTuple):
     short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
     unequal: SliceLimits = SliceLimits(0.0, 1.2, np.inf, 3.6)
     """Of parts that touch each other, do not move as two, and are not as long as each other, as bones of both limbs are. People
-    628, 684 and 692, who run, and human 14 have such flesh about a pelvis, with lengths of 0.3 to 1.14 and mixtures of 1.2 to
+    684 and 692, who run, and human 14 have such flesh about a pelvis, with lengths of 0.3 to 1.08 and mixtures of 1.2 to
     3.3; one side of people 4 and 88 is the pelvis itself, with lengths of 1.9 and 2.1."""
     longer_of_unequal: float = 1.4
     """Length of one in that of the other from which on they are not as long as each other. Such flesh has 1.6 to 2.9, links
     from the pelvis to both hips of the dance 1.2."""
-    as_two: float = 2.5
+    as_two: float = 2.1
     """What one motion leaves of both parts, in what a motion of its own leaves of each, above which they move as two. Those
-    two runners have 3.1 and 3.7, links from the pelvis to both hips of the dance 1.7 to 2.0."""
+    runners have 3.1 and 3.7, person 704, who walks and has halves of 0.8 radii, 2.24, links from the pelvis to both hips of
+    the dance 1.7 to 1.95."""
     length_within: float = 2.6
     """Length of a part farther out, at most, in radii. Of people 545 to 569, 1, 8, 12, humans, four-legged and random trees 0
     to 9 and of wave, dance and wolf (every fourth frame), two slices have 0.6 and 2.6, and mixtures of 2.2 and 2.4. Of true

@@ -425,11 +425,11 @@ def test_what_is_left_of_halves_that_are_rigid_is_none() -> None:
 @pytest.mark.parametrize(
     ("left", "lengths", "counts"),
     [
-        (2.4, (0.6, 1.1), (0, 0, 2)),
-        (2.4, (1.0, 1.1), (0, 2, 0)),
-        (2.4, (0.6, 1.3), (0, 2, 0)),
-        (2.6, (0.6, 1.1), (2, 0, 0)),
-        (2.6, (1.0, 1.1), (2, 0, 0)),
+        (2.05, (0.6, 1.1), (0, 0, 2)),
+        (2.05, (1.0, 1.1), (0, 2, 0)),
+        (2.05, (0.6, 1.3), (0, 2, 0)),
+        (2.15, (0.6, 1.1), (2, 0, 0)),
+        (2.15, (1.0, 1.1), (2, 0, 0)),
     ],
 )
 def test_halves_have_limits_by_whether_they_move_as_two_and_are_as_long(
