@@ -10,14 +10,14 @@ from kinetree.tasks.numerics.structure.bone_lengths import free_bone_lengths
 from kinetree.tasks.numerics.structure.end_effectors import end_effectors
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.joint_names import joint_names
-from kinetree.tasks.numerics.structure.joint_partners import RootedParts
+from kinetree.tasks.numerics.structure.joint_partners import RootedParts, joint_partners
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
-from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.linked_parts import with_rigid_links
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
 from kinetree.tasks.numerics.structure.narrowings import narrowings
-from kinetree.tasks.numerics.structure.necks import necks, tubes
+from kinetree.tasks.numerics.structure.necks import Tube, necks, tubes
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.posed_tree import joints_and_ends, joints_of_all_cuts, posed_tree, with_spine
 from kinetree.tasks.numerics.structure.pruning import Dropped
@@ -148,23 +148,29 @@ def kinematic_tree(
     joints = joints_of_all_cuts(first, further, body.size)
     if has_links:
         first, joints = with_rigid_links(body, first, joints, NOISE * body.size)
-    hanging = tubes(V, body.F, first.label, first.parents, first.radius) if has_necks else []
+    pairs = limb_pairs(V, body.F, leaves) if has_necks or has_narrowings or has_mirrored_joints else NO_PAIRS
+    hanging = _heads(body, first, pairs) if has_necks else []
     tree = posed_tree(body, first, confidence, joints, laid, hanging)
     if up is not None:
         tree = with_spine(body, first, tree, end_effectors(V, body.F, tree.label, tree.parents, leaves), confidence, up)
     if found := list(necks(hanging, tree.motion.rest, first.shown)):
         tree = with_still_joints(tree, found, Still.NECK)
-    if has_narrowings or has_mirrored_joints:
-        pairs = limb_pairs(V, body.F, leaves)
-        if has_narrowings:
-            tree = _with_narrowings(body, tree, pairs)
-        if has_mirrored_joints:
-            tree = _with_mirrored_joints(body, tree, pairs)
+    if has_narrowings:
+        tree = _with_narrowings(body, tree, pairs)
+    if has_mirrored_joints:
+        tree = _with_mirrored_joints(body, tree, pairs)
     if has_second_ends:
         leaves = np.concatenate([leaves, second_ends(V, body.F, tree.label, tree.parents, leaves)])
     ends = end_effectors(V, body.F, tree.label, tree.parents, leaves)
     made, order = _assembled(V, tree, ends, score_spans(len(body.x), body.takes))
     return made, _derivation(first, tree, made, order)
+
+
+def _heads(body: MovingSurface, first: FirstTree, pairs: LimbPairs) -> list[Tube]:
+    """The tubes on which last parts of limbs hang; a hand on a wrist, whose joint has a mirror image, is no head."""
+    hanging = tubes(body.V, body.F, first.label, first.parents, first.radius)
+    partner = joint_partners(body.F, RootedParts(first.label, first.parents, first.radius), pairs)
+    return [tube for tube in hanging if partner[tube.part] < 0]
 
 
 def _with_narrowings(body: MovingSurface, tree: PosedTree, pairs: LimbPairs) -> PosedTree:

@@ -6,13 +6,18 @@ import numpy as np
 import pytest
 import trimesh
 from articulated import ALL_STAY, Known, chain, moved, swings, three_arms
+from fleshy_legs import pairs, seen
+from legs import ALONG
 from limbs import bent, rotation
 from shipped import PARTS, TREE
 from whole_tree import whole_tree
 
+from kinetree.tasks.numerics.structure import kinematic_tree as numerics
 from kinetree.tasks.numerics.structure import posed_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.kinematic_tree import Derivation, KinematicTree, kinematic_tree
+from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS
+from kinetree.tasks.numerics.structure.necks import Tube
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.rigid_parts import rigid_parts
 from kinetree.tasks.numerics.structure.surface_joints import SurfaceJoints
@@ -322,3 +327,16 @@ def test_bones_whose_joints_one_take_tells_apart_do_not_begin_in_one_place() -> 
     np.testing.assert_array_equal(as_one.rest[one], as_one.rest[other])
     one, other = near(told_apart, at)
     assert np.linalg.norm(told_apart.rest[one] - told_apart.rest[other]) > 1.0
+
+
+def test_a_part_whose_joint_has_a_mirror_image_is_no_head(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All last parts hang on tubes here; both shanks are each other's mirror images, the chest is a head then."""
+    body, tree = seen()
+    last = np.setdiff1d(np.arange(1, len(tree.parents)), tree.parents).tolist()
+    hanging = [Tube(part, np.zeros((2, 3)), 1.0, np.zeros(len(body.V))) for part in last]
+    monkeypatch.setattr(numerics, "tubes", lambda *of: hanging)
+    shanks = {int(tree.label[np.argmax(along)]) for along in ALONG.values()}
+    assert [tube.part for tube in numerics._heads(body, tree, NO_PAIRS)] == last
+    assert {tube.part for tube in numerics._heads(body, tree, pairs())} == {*last} - shanks
+    assert len(shanks) == 2
+    assert len(last) == 3
