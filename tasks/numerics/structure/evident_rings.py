@@ -36,7 +36,7 @@ class EvidentRingsSettings(NamedTuple):
     recorded bodies have 0.071 and more, three false ones 0.056 to 0.062; where the trunk has fewer, seven true ones have 0.051
     to 0.062."""
     least_score_across_limbs: float = 0.05
-    """The same across both limbs of a pair, of the clearer one."""
+    """The same across both limbs of a pair, of the clearer one. Not varied: chosen with `least_score_in_trunk`."""
     least_apart: float = 0.6
     """Distance of a ring across the trunk from the nearest of the part's joints, in radii of the ring, at least: the likeliest
     ring of a part that lies nearer says that the joint that is there is a little off."""

@@ -50,8 +50,9 @@ class MirroredSlicesSettings(NamedTuple):
     """Of parts that do not. Slices beside shoulders have lengths of 1.0 to 3.8, the longer one of 1.17 and more, at most 2.4
     times the other's, and mixtures of 1.3 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
     opposed: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 5.2)
-    """Of parts that touch each other and move as two, as flesh of two thighs does and halves of a pelvis do not; they may be as
-    short as can be. Two runners, people 556 and 604, have such parts, with lengths of 0.5 to 1.4 and mixtures of 1.7 to 4.5."""
+    """Of parts that touch each other and move as two, as flesh of two thighs does and links from a pelvis to both hips do not;
+    they may be as short as can be. People 556 and 604, who run, and 628 and 704 have such parts, with lengths of 0.5 to 1.4 and
+    mixtures of 1.7 to 4.5."""
     unequal: SliceLimits = SliceLimits(0.0, 1.2, np.inf, 3.6)
     """Of parts that touch each other, do not move as two, and are not as long as each other, as bones of both limbs are. People
     684 and 692, who run, and human 14 have such flesh about a pelvis, with lengths of 0.3 to 1.08 and mixtures of 1.2 to
@@ -61,8 +62,7 @@ class MirroredSlicesSettings(NamedTuple):
     from the pelvis to both hips of the dance 1.2."""
     as_two: float = 2.1
     """What one motion leaves of both parts, in what a motion of its own leaves of each, above which they move as two. Those
-    runners have 3.1 and 3.7, person 704, who walks and has halves of 0.8 radii, 2.24, links from the pelvis to both hips of
-    the dance 1.7 to 1.95."""
+    four people have 2.2 to 3.7, links from the pelvis to both hips of the dance 1.7 to 1.95."""
     length_within: float = 2.6
     """Length of a part farther out, at most, in radii. Of people 545 to 569, 1, 8, 12, humans, four-legged and random trees 0
     to 9 and of wave, dance and wolf (every fourth frame), two slices have 0.6 and 2.6, and mixtures of 2.2 and 2.4. Of true
