@@ -5,10 +5,12 @@ from collections.abc import Callable
 import numpy as np
 from articulated import Known, chain, moved, swings
 from limbs import rotation
+from scipy.spatial.transform import Rotation
 from shipped import EVIDENCE, TREE
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
+from kinetree.tasks.numerics.structure.inertia import inertial_turns
 from kinetree.tasks.numerics.structure.joint_evidence import FrameEvidence
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.tree_joints import Cut, TreeJoints, tree_joints
@@ -21,6 +23,19 @@ def turning(degrees: float = 25.0) -> Floats:
     """(frame, part, 3, 3) the middle part swings, the last one about its joint too."""
     turn = swings(24, 3, 20.0, axes=1, seed=1)
     turn[:, 2] = swings(24, 3, degrees, axes=1, seed=2)[:, 2]
+    return turn
+
+
+def bent_by_flesh(degrees: float) -> Floats:
+    """Turns of a tube whose middle part swings; the last one turns by so much as inertia has it."""
+    turn = turning(0.0)
+    swinging = chain((0.0,), turn[:, :2])
+    middle, along = np.array([0.0, 0.0, 2.5]), np.array([0.0, 0.0, END])
+    bend = inertial_turns(middle, along, swinging.R[:, 1], swinging.t[:, 1])
+    w = np.zeros((len(turn), 3))
+    w[1:-1] = list(bend.values())
+    w *= np.radians(degrees) / np.sqrt((w**2).sum(axis=1).mean())
+    turn[:, 2] = Rotation.from_rotvec(w).as_matrix()
     return turn
 
 

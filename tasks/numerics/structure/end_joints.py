@@ -19,9 +19,11 @@ from kinetree.tasks.numerics.structure.end_rings import EndFrames, EndRing, Fits
 from kinetree.tasks.numerics.structure.evident_rings import EvidentRingsSettings, evident_rings, needed_score
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.hinged_piece import halves, laid_as_one, motions, turns_of_halves
+from kinetree.tasks.numerics.structure.inertia import Turns, beyond_inertia, inertial_turns
 from kinetree.tasks.numerics.structure.piece_fit import PiecePose
 from kinetree.tasks.numerics.structure.ring_evidence import (
     RingEvidence,
+    about_mean,
     evidence_of_halves,
     going_on,
     judged_frames,
@@ -80,10 +82,14 @@ class EndJoint(NamedTuple):
 
 
 class _RingFits(NamedTuple):
-    """A ring, and how its part lies in the frames so far."""
+    """A ring, and how its part lies in the frames so far.
+
+    inertia : how flesh that stays behind would turn its hinge; none where that is not asked
+    """
 
     ring: EndRing
     fits: Fits
+    inertia: Turns
 
     def within(self, span: Ints) -> "_RingFits":
         """The same with the frames from the first to before the last of a span alone."""
@@ -107,7 +113,7 @@ def end_joints(
     """
     chosen, count = settings or EndJointsSettings(), len(frames.tree.R)
     at, pairs = judged_frames(count, takes, chosen.most_frames)
-    laid = [_RingFits(ring, fits) for ring, fits in zip(rings, judged, strict=True)]
+    laid = [_RingFits(ring, fits, _inertia(frames.tree, ring, takes)) for ring, fits in zip(rings, judged, strict=True)]
     table = [_judged(frames, laid, pairs, span, chosen) for span in score_spans(count, takes)]
     evident = evident_rings(frames.tree, rings, table, mirrored, chosen.evident)
     own = [laid[k] for k in evident]
@@ -134,9 +140,10 @@ def _judged(
     above = [tree.R[:, one.ring.cut.above] for one in laid]
     goes_on = going_on(tree.R, tree.parents, pairs, chosen.evident.nearer) if len(pairs) else 1.0
     lasting, apart = goes_on >= chosen.goes_on, goes_on < chosen.halves_below
+    own = [_share_beyond_inertia(one, pairs) if lasting else 1.0 for one in within]
     evidence = [
-        ring_evidence(R, one.fits, {f: fit.one for f, fit in one.fits.items()}, pairs, lasting=lasting)
-        for R, one in zip(above, within, strict=True)
+        ring_evidence(R, one.fits, {f: fit.one for f, fit in one.fits.items()}, pairs, lasting=lasting).times(share)
+        for R, one, share in zip(above, within, own, strict=True)
     ]
     clear = (1.0 + chosen.least_in_halves) ** 2
     at_ends = [not one.ring.cut.hung for one in laid]
@@ -148,7 +155,7 @@ def _judged(
     mean = {k: _mean_turn(within[k].fits) for k in likely}
     steady = dict(zip(likely, _left_at(frames, [within[k] for k in likely], list(mean.values())), strict=True))
     for k in likely:
-        evidence[k] = ring_evidence(above[k], within[k].fits, steady[k], pairs, lasting=lasting)
+        evidence[k] = ring_evidence(above[k], within[k].fits, steady[k], pairs, lasting=lasting).times(own[k])
     by_halves = [k for k in likely if apart and at_ends[k]]
     turns = _turns_of_halves(frames, [within[k] for k in by_halves], [mean[k] for k in by_halves])
     for k, of_halves in zip(by_halves, turns, strict=True):
@@ -157,6 +164,21 @@ def _judged(
         if shown.score >= chosen.least_in_halves:
             evidence[k] = shown._replace(score=max(scaled, evidence[k].score))
     return evidence
+
+
+def _inertia(tree: FirstTree, ring: EndRing, takes: Sequence[slice] | None) -> Turns:
+    """How flesh that stays behind would turn a ring's hinge; asked at the ends of limbs with a mirror image alone."""
+    if not ring.is_bent:
+        return {}
+    (cut, piece, _), R, t = ring, tree.R[:, ring.cut.part], tree.t[:, ring.cut.part]
+    return inertial_turns(piece.V.mean(axis=0), cut.centre - piece.joint, R, t, takes)
+
+
+def _share_beyond_inertia(laid: _RingFits, pairs: Ints) -> float:
+    """Share of a hinge's turn that inertia does not explain."""
+    if not laid.inertia or not laid.fits:
+        return 1.0
+    return beyond_inertia(about_mean({f: fit.pose.Q for f, fit in laid.fits.items()}), laid.inertia, pairs)
 
 
 def _usual(laid: _RingFits, chosen: EndJointsSettings) -> _RingFits:

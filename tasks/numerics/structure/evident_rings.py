@@ -24,12 +24,6 @@ class EvidentRingsSettings(NamedTuple):
     """Score of a ring (`ring_evidence`), at least. Chosen on wave, dance, ballet, wolf, people 0 to 19 and 60 to 69 and humans,
     four-legged and random trees 60 to 63: of 26 true joints the least had 0.0061 with straight hinges, rings where nothing
     turns 0.0032 at most. With bent ones two rings in hands of person 92 have 0.0050 and 0.0058, a true wrist 0.0055."""
-    least_score_if_mirrored: float = 0.0126
-    """The same at the end of a limb with a mirror image, where hinges are laid bent, too, and a surface holds fingers loosely.
-    Of 65 people in 36 frames of 6,000 vertices eleven false rings across hands have 0.0065 to 0.0125, two 0.0143 and 0.0246;
-    one true joint there, a wrist, has 0.0076, the others 0.0148 and more, of 35 people in 24 frames of 3,000 vertices 0.0130
-    and more. A toe of the ballet has 0.0127; of a rigged body a wrist and two fingers have 0.0080 to 0.0122. With 12,000
-    vertices all scores are higher, those of false rings too: see RESULTS."""
     least_score_if_short: float = 0.0145
     """The same where the nearer piece is shorter than `slice_length`, as a neck is. On these bodies five true heads have 0.0164
     to 0.0263, two that shape gives as well 0.0117 and 0.0127; rings within heads, of people 86 to 99 too, and beside a foot of
@@ -92,7 +86,7 @@ def needed_score(ring: EndRing, settings: EvidentRingsSettings) -> float:
         return settings.least_score_in_trunk
     if _is_short(ring, settings.slice_length):
         return settings.least_score_if_short
-    return settings.least_score_if_mirrored if ring.is_bent else settings.least_score
+    return settings.least_score
 
 
 def joint_inwards(tree: FirstTree, cut: EndCut) -> int:

@@ -41,6 +41,10 @@ class RingEvidence(NamedTuple):
     far: float
     near: float
 
+    def times(self, share: float) -> "RingEvidence":
+        """The same with so much of the score."""
+        return self._replace(score=share * self.score)
+
 
 def ring_evidence(
     above: Floats, fits: Mapping[int, HingedFit], steady: Mapping[int, float], pairs: Ints, lasting: bool = True

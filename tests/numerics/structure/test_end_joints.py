@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from limbs import rotation
-from smeared import END, Frames, aligned, found_in, turning
+from smeared import END, Frames, aligned, bent_by_flesh, found_in, turning
 from whole_tree import joints_at_ends
 
 from kinetree.tasks.numerics.arrays import Floats
@@ -59,6 +59,12 @@ def test_joint_that_is_not_in_the_aligned_vertices_is_found(noise: float) -> Non
     (joint,) = joints_at(25.0, noise)
     np.testing.assert_allclose(joint.cut.centre, [0.0, 0.0, END], atol=0.4)
     assert joint.visible.all()
+
+
+@pytest.mark.parametrize("mirrored", [(), (1,)])
+def test_flesh_that_stays_behind_is_no_joint_of_a_limb_with_a_mirror_image(mirrored: tuple[int, ...]) -> None:
+    assert len(joints_at(bent_by_flesh(4.0), 0.02, mirrored=mirrored)) == 1 - len(mirrored)
+    assert len(joints_at(turning(4.0), 0.02, mirrored=mirrored)) == 1
 
 
 def test_the_piece_beyond_moves_as_in_the_frames() -> None:
@@ -156,7 +162,7 @@ def test_no_joint_is_found_where_nothing_turns(noise: float) -> None:
 def test_frames_in_which_something_touches_a_piece_do_not_count(left: tuple[float, ...], kept: tuple[int, ...]) -> None:
     """Distances from the surface with the hinge, of a ring of radius 1; with a twentieth of it or less nothing touches."""
     fits = {f: SimpleNamespace(two=two**2) for f, two in enumerate(left)}
-    laid = _RingFits(SimpleNamespace(cut=SimpleNamespace(radius=1.0)), fits)  # type: ignore[arg-type]
+    laid = _RingFits(SimpleNamespace(cut=SimpleNamespace(radius=1.0)), fits, {})  # type: ignore[arg-type]
     assert tuple(_usual(laid, EndJointsSettings()).fits) == kept
 
 
