@@ -11,7 +11,8 @@ from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import FLESH
 from kinetree.tasks.numerics.structure.ring_evidence import about_mean, going_on, judged_frames
 from kinetree.tasks.numerics.structure.score_spans import score_spans
-from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence, of_mirrored_limbs
+from kinetree.tasks.numerics.structure.smeared_ends import close_ends
+from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 LEAST = 0.28
@@ -21,23 +22,18 @@ vertices) false joints have 0.13 to 0.20. True last joints of people 685 to 694,
 
 
 def without_inertial_ends(body: MovingSurface, tree: FirstTree, pairs: LimbPairs, evidence: SurfaceEvidence) -> FirstTree:
-    """The tree without last joints of limbs with a mirror image whose turn inertia explains in every take.
+    """The tree without last joints of limbs with a mirror image that lie close to the one before and that inertia explains.
+
+    It must do so in every take.
 
     Where frames are too far apart for turns to go on from one to the next, accelerations say nothing, and every joint stays.
 
     tree : without joints that surfaces alone show
     """
-    flesh = [part for part in _last_parts(tree, pairs) if _left_by_inertia(body, tree, part, evidence) < LEAST]
+    flesh = [part for part in close_ends(tree, pairs) if _left_by_inertia(body, tree, part, evidence) < LEAST]
     for vertex in [int(np.flatnonzero(tree.label == part)[0]) for part in flesh]:
         tree = without_joint(body, tree, int(tree.label[vertex]), evidence, FLESH)
     return tree
-
-
-def _last_parts(tree: FirstTree, pairs: LimbPairs) -> list[int]:
-    """Parts at the ends of limbs with a mirror image, beyond another part of the limb."""
-    carried = np.bincount(tree.parents[1:], minlength=len(tree.parents))
-    is_last = (carried == 0) & (carried[tree.parents] == 1) & (tree.parents > 0)
-    return np.flatnonzero(is_last & of_mirrored_limbs(tree, pairs)).tolist()
 
 
 def _left_by_inertia(body: MovingSurface, tree: FirstTree, part: int, evidence: SurfaceEvidence) -> float:

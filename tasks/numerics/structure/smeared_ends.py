@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.structure.surface_evidence import KnownFits, Surfac
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 CLOSE = 3.1
-"""Distance of a limb's last joint from the one before, in radii of its border, below which surfaces are asked without it.
+"""Distance of a limb's last joint from the one before, in radii of its border, below which both are close.
 Rings take the place of balls of feet that lie at 1.3 to 3 radii; true balls are at 2.7 to 3.9. With 4.5 three paws come nearer
 too, but an elbow beyond a slice of the shoulder goes astray."""
 
@@ -29,7 +29,7 @@ def without_smeared_ends(
     """
     chosen = EndJointsSettings()
     runs = judged_runs(len(body.x), body.takes, chosen)
-    for vertex in [int(np.flatnonzero(tree.label == k)[0]) for k in _close_ends(tree, pairs)]:
+    for vertex in [int(np.flatnonzero(tree.label == k)[0]) for k in close_ends(tree, pairs)]:
         one = without_joint(body, tree, int(tree.label[vertex]), evidence, SMEARED)
         part, frames = int(one.label[vertex]), evidence.frames(body, one)
         rings = [ring for ring in all_end_rings(body.V, body.F, body.area, one, pairs) if ring.cut.part == part]
@@ -48,7 +48,7 @@ def are_replaced(tree: FirstTree, left: FirstTree, extended: FirstTree) -> bool:
     return all(len(np.unique(extended.label[np.isin(tree.label, [k, tree.parents[k]])])) > 1 for k in gone)
 
 
-def _close_ends(tree: FirstTree, pairs: LimbPairs) -> list[int]:
+def close_ends(tree: FirstTree, pairs: LimbPairs) -> list[int]:
     """Last parts of limbs with a mirror image whose joint lies close to the one before, which carries nothing else."""
     apart = np.linalg.norm(tree.rest - tree.rest[tree.parents], axis=1)
     carried = np.bincount(tree.parents[1:], minlength=len(tree.parents))

@@ -7,7 +7,7 @@ from limbs import rotation
 from smeared import END, Frames, bent_by_flesh, moving, turning
 
 from kinetree.tasks.numerics.arrays import Floats
-from kinetree.tasks.numerics.structure import inertial_ends
+from kinetree.tasks.numerics.structure import smeared_ends
 from kinetree.tasks.numerics.structure.first_tree import FirstTree, in_tree_order
 from kinetree.tasks.numerics.structure.inertial_ends import without_inertial_ends
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS
@@ -18,7 +18,7 @@ from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
 
 @pytest.fixture(autouse=True)
 def _all_limbs_have_mirror_images(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inertial_ends, "of_mirrored_limbs", lambda tree, _: np.ones(len(tree.parents), np.bool_))
+    monkeypatch.setattr(smeared_ends, "of_mirrored_limbs", lambda tree, _: np.ones(len(tree.parents), np.bool_))
 
 
 def asked(turn: Floats, takes: list[slice] | None = None) -> tuple[FirstTree, FirstTree]:

@@ -125,7 +125,7 @@ def test_which_joints_are_asked_for(parents: list[int], close: list[int]) -> Non
     """The last of a limb, on a part that carries nothing else and is not the root."""
     tree, count = smeared().tree, len(parents)
     heights, radius = np.arange(count)[:, None] * [0.0, 0.0, 1.0], np.ones(count)
-    assert smeared_ends._close_ends(tree._replace(parents=np.array(parents), rest=heights, radius=radius), NO_PAIRS) == close
+    assert smeared_ends.close_ends(tree._replace(parents=np.array(parents), rest=heights, radius=radius), NO_PAIRS) == close
 
 
 def test_both_limbs_may_lose_one(monkeypatch: pytest.MonkeyPatch) -> None:
