@@ -124,7 +124,7 @@ def test_a_joint_moves_only_where_the_best_place_leaves_clearly_less(gain: float
 
 def test_a_joint_stays_where_the_least_cost_is_at_the_end_of_the_places() -> None:
     tree, costs = costs_of(0.0)
-    anyhow = HingePlacesSettings(share=9.0)
+    anyhow = HingePlacesSettings(share=9.0, carried_apart=np.inf)
     inside, beyond = (hinge_shifts(tree, least_at(costs, at, 0.5), tree.rest, ALL, (), anyhow) for at in (2.5, 3.5))
     assert inside[2].any()
     np.testing.assert_array_equal(beyond[2], 0.0)
@@ -134,10 +134,27 @@ def test_joints_do_not_go_farther_than_half_of_the_bone_on_that_side() -> None:
     tree, costs = costs_of(0.0)
     rest = tree.rest.copy()
     rest[1, 2] = rest[2, 2] - 1.5 * tree.radius[2]
-    short = tree._replace(rest=rest)
-    assert not shift_of(short, least_at(costs, -0.8, 0.5)).any()
-    assert shift_of(short, least_at(costs, -0.7, 0.5)).any()
-    assert shift_of(short, least_at(costs, 0.8, 0.5)).any(), "the bone beyond is longer"
+    short, anyhow = tree._replace(rest=rest), HingePlacesSettings(carried_apart=np.inf)
+
+    def moves(place: float) -> bool:
+        return bool(hinge_shifts(short, least_at(costs, place, 0.5), rest, ALL, (), anyhow)[2].any())
+
+    assert not moves(-0.8)
+    assert moves(-0.7)
+    assert moves(0.8), "the bone beyond is longer"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "moves"), [(0.0, 0.24, True), (0.0, 0.26, False), (0.1, 0.29, True), (0.1, 0.31, False)]
+)
+def test_a_joint_does_not_go_where_its_parts_are_carried_apart(
+    before: float, after: float, moves: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Drifts in radii."""
+    tree, costs = costs_of(0.0)
+    drifts = iter([before * tree.radius, after * tree.radius])
+    monkeypatch.setattr(FirstTree, "drift_at", lambda *of: next(drifts))
+    assert shift_of(tree, least_at(costs, 0.5, 0.5)).any() == moves
 
 
 def forked(lateral: float, behind: float = 2.0) -> tuple[FirstTree, HingeCosts]:
