@@ -124,7 +124,7 @@ def test_a_joint_moves_only_where_the_best_place_leaves_clearly_less(gain: float
 
 def test_a_joint_stays_where_the_least_cost_is_at_the_end_of_the_places() -> None:
     tree, costs = costs_of(0.0)
-    anyhow = HingePlacesSettings(share=9.0, carried_apart=np.inf)
+    anyhow = HingePlacesSettings(share=9.0, carried_apart=9.0)
     inside, beyond = (hinge_shifts(tree, least_at(costs, at, 0.5), tree.rest, ALL, (), anyhow) for at in (2.5, 3.5))
     assert inside[2].any()
     np.testing.assert_array_equal(beyond[2], 0.0)
@@ -134,7 +134,7 @@ def test_joints_do_not_go_farther_than_half_of_the_bone_on_that_side() -> None:
     tree, costs = costs_of(0.0)
     rest = tree.rest.copy()
     rest[1, 2] = rest[2, 2] - 1.5 * tree.radius[2]
-    short, anyhow = tree._replace(rest=rest), HingePlacesSettings(carried_apart=np.inf)
+    short, anyhow = tree._replace(rest=rest), HingePlacesSettings(carried_apart=9.0)
 
     def moves(place: float) -> bool:
         return bool(hinge_shifts(short, least_at(costs, place, 0.5), rest, ALL, (), anyhow)[2].any())
