@@ -15,10 +15,10 @@ MOST = 15.0
 """Root mean square turn that flesh has at most, degrees: what turns farther is a joint, though it dangles. Not varied: false
 joints in hands have 2.2 to 6.0, one with 12,000 vertices 10 (person 711)."""
 
-LEAST = 0.21
-"""Share of the square of all turning that inertia explains, below which it explains nothing: in a toe that noise turns a little
-of the rest may be in step with the foot by chance. In hands it explains 0.25 to 0.89 of that of false joints (fourteen people),
-of the toes of a rigged body and of balls of feet that are hardly seen 0.00 to 0.17."""
+CLEAR = 0.25
+"""Share of the square of all turning that inertia explains, from which on it counts in full; below, in proportion: where noise
+turns a toe far, the little that agrees may be in step with the foot by chance. In hands it explains 0.25 to 0.89 of the turn of
+false joints (fourteen people), of toes and fingers of a rigged body and of balls of feet that are hardly seen 0.00 to 0.17."""
 
 Turns = dict[int, Floats]
 """By frame, (xyz,) a turn as a vector in the reference's axes."""
@@ -47,7 +47,8 @@ def inertial_turns(middle: Floats, along: Floats, R: Floats, t: Floats, takes: S
 def beyond_inertia(turn: Mapping[int, Floats], inertia: Mapping[int, Floats], pairs: Ints) -> float:
     """Share of the turn of a hinge that inertia does not explain, as far as it agrees from frame to frame.
 
-    1 in few frames, where inertia explains little (`LEAST`), and where the hinge turns farther than flesh does (`MOST`).
+    Where inertia explains little of all turning it counts in part (`CLEAR`). 1 in few frames, and where the hinge turns farther
+    than flesh does (`MOST`).
 
     Flesh goes only so far: inertial turns q count as q / (1 + |q| / their root mean square).
 
@@ -67,8 +68,8 @@ def beyond_inertia(turn: Mapping[int, Floats], inertia: Mapping[int, Floats], pa
     q = q / (1.0 + far / max(float(np.sqrt((far**2).mean())), tiny))
     w, q = w - w.mean(axis=0), q - q.mean(axis=0)
     left = w - max(float((w * q).sum()), 0.0) / max(float((q**2).sum()), tiny) * q
-    square, rest = float((w**2).sum()), float((left**2).sum())
-    if rest > (1.0 - LEAST) * square:
+    before, after = (agreement(both, *v[row.reshape(both.shape).T]) * float((v**2).sum()) for v in (w, left))
+    if before <= 0.0:
         return 1.0
-    before, after = (agreement(both, *v[row.reshape(both.shape).T]) for v in (w, left))
-    return min(after * rest / (before * square), 1.0) if before * square > 0.0 else 1.0
+    explained = 1.0 - float((left**2).sum()) / float((w**2).sum())
+    return 1.0 - min(explained / CLEAR, 1.0) * max(1.0 - after / before, 0.0)

@@ -92,3 +92,16 @@ def test_few_frames_and_no_turn_at_all_say_nothing() -> None:
     assert beyond_inertia(flesh, {}, pairs()) == 1.0
     assert left({f: 0.0 * w for f, w in flesh.items()}) == 1.0
     assert beyond_inertia(flesh, {f: 0.0 * w for f, w in flesh.items()}, pairs()) == 1.0
+
+
+def test_what_inertia_explains_of_little_counts_in_part() -> None:
+    """Amid noise the little that agrees is in step with the limb by chance, or because flesh is all that agrees."""
+    flesh, rng = bent_by_flesh(4.0), np.random.default_rng(0)
+
+    def mean(noise: float) -> float:
+        return float(
+            np.mean([left({f: w + np.radians(noise) * rng.normal(size=3) for f, w in flesh.items()}) for _ in range(40)])
+        )
+
+    assert mean(0.5) < 0.1
+    assert mean(10.0) > 0.7
