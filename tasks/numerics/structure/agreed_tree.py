@@ -18,7 +18,15 @@ from kinetree.tasks.numerics.structure.joint_partners import RootedParts, in_mir
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.mirrored_slices import MirroredSlicesSettings, Slice, mirrored_slices
 from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, PartPairs, part_tree
-from kinetree.tasks.numerics.structure.pruning import ALONE, FLESH, Dropped, Pruned, pruned_without, shared_out
+from kinetree.tasks.numerics.structure.pruning import (
+    ALONE,
+    FLESH,
+    Dropped,
+    Pruned,
+    pruned_without,
+    shared_out,
+    without_flat_ends,
+)
 from kinetree.tasks.numerics.structure.tree_joints import Cut, KinematicTreeSettings, TreeJoints, tree_joints, tree_of_parts
 from kinetree.tasks.numerics.structure.trunk_flesh import with_trunk_flesh
 from kinetree.tasks.numerics.structure.trunk_slices import trunk_slices
@@ -87,7 +95,7 @@ def agreed_tree(
         tree = _without_slices(body, tree, trunk_slices(body, tree, leaves), confidence, settings)
         slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
         tree = _without_slices(body, tree, slices, confidence, settings)
-        tree = _without_flesh(body, tree, pairs, confidence, settings)
+        tree = _without_flesh(body, tree, leaves, pairs, confidence, settings)
     return AgreedTree(which, tree)
 
 
@@ -134,11 +142,17 @@ def _without_slices(
 
 
 def _without_flesh(
-    body: MovingSurface, tree: FirstTree, pairs: LimbPairs, confidence: Floats, settings: KinematicTreeSettings
+    body: MovingSurface,
+    tree: FirstTree,
+    leaves: Ints,
+    pairs: LimbPairs,
+    confidence: Floats,
+    settings: KinematicTreeSettings,
 ) -> FirstTree:
-    """The tree with flesh of the trunk that limbs of a pair hold as part of the trunk."""
+    """The tree with flesh of the trunk that limbs of a pair hold as part of the trunk, and without parts that are left flat."""
     left = _pruned(body, tree)
     new = with_trunk_flesh(body, left, pairs, confidence, settings.pruning.unpaired.paired)
+    new = without_flat_ends(body, new, leaves, settings.pruning.flat)
     return tree if new is left else _of_cut(tree, _joints(body, tree, new, confidence, settings))
 
 

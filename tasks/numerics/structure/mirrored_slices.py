@@ -53,9 +53,9 @@ class MirroredSlicesSettings(NamedTuple):
     """Of parts that touch each other and move as two, as flesh of two thighs does and links from a pelvis to both hips do not;
     they may be as short as can be. People 556 and 604, who run, and 628 and 704 have such parts, with lengths of 0.5 to 1.4 and
     mixtures of 1.7 to 4.5."""
-    unequal: SliceLimits = SliceLimits(0.0, 1.2, np.inf, 3.6)
+    unequal: SliceLimits = SliceLimits(0.0, 1.5, np.inf, 3.6)
     """Of parts that touch each other, do not move as two, and are not as long as each other, as bones of both limbs are. People
-    684 and 692, who run, and human 14 have such flesh about a pelvis, with lengths of 0.3 to 1.08 and mixtures of 1.2 to
+    684, 692 and 708, who run, and human 14 have such flesh about a pelvis, with lengths of 0.3 to 1.26 and mixtures of 1.2 to
     3.3; one side of people 4 and 88 is the pelvis itself, with lengths of 1.9 and 2.1."""
     longer_of_unequal: float = 1.4
     """Length of one in that of the other from which on they are not as long as each other. Such flesh has 1.6 to 2.9, links

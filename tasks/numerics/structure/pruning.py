@@ -150,6 +150,21 @@ def pruned_without(
     return _pruned_by_motion(body, left, leaves, pairs, _by_takes(body, settings))
 
 
+def without_flat_ends(body: MovingSurface, state: Pruned, leaves: Ints, flat: float) -> Pruned:
+    """The same without last parts that have no leaf and hardly reach beyond their border, which go to the part above.
+
+    leaves : (leaf,) vertices at the ends of limbs
+    flat   : see `PruningSettings`
+    """
+    tree, label = state.part_tree.tree, state.parts.label
+    reach = _flat_parts(body, label, state.part_tree, np.isin(np.arange(len(tree.order)), label[leaves]))
+    flattest = min(reach, key=lambda part: reach[part], default=-1)
+    if flattest < 0 or reach[flattest] >= flat:
+        return state
+    above = int(tree.order[tree.parents[np.flatnonzero(tree.order == flattest)[0]]])
+    return without_flat_ends(body, shared_out(body, state, flattest, np.full(len(label), above), FLESH), leaves, flat)
+
+
 def _by_takes(body: MovingSurface, settings: PruningSettings) -> PruningSettings:
     """Slabs count where there are several takes."""
     return settings if len(body.takes or ()) > 1 else settings._replace(slab_length=0.0)

@@ -8,8 +8,8 @@ from shipped import PRUNING
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.joint_rotations import in_between
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
-from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface, part_tree
+from kinetree.tasks.numerics.structure.pruning import FLESH, SLIDING, STILL, Dropped, Pruned, pruned, without_flat_ends
 
 
 def of(body: Known, leaves: tuple[int, ...] = (), takes: list[slice] | None = None) -> Pruned:
@@ -112,14 +112,25 @@ def test_last_part_that_hardly_reaches_beyond_its_border_is_flesh_unless_it_has_
     half_length: float, has_leaf: bool, dropped: tuple[str, ...]
 ) -> None:
     """A strip along the tube, 1.1 wide, and a square turn alike about their own middle."""
-    body = chain((-4.0,))
-    strip = (np.abs(body.V[:, 2]) < half_length) & (body.V[:, 0] > 0.8)
-    W = np.eye(3)[np.where(strip, 2, body.label)]
-    joints = np.vstack([body.joints, [0.9, 0.0, 0.0]])
-    known = moved(body.V, body.F, W, joints, np.array([-1, 0, 1]), swings(24, 3, 20))
+    tube = chain((-4.0,))
+    strip = (np.abs(tube.V[:, 2]) < half_length) & (tube.V[:, 0] > 0.8)
+    W = np.eye(3)[np.where(strip, 2, tube.label)]
+    joints = np.vstack([tube.joints, [0.9, 0.0, 0.0]])
+    known = moved(tube.V, tube.F, W, joints, np.array([-1, 0, 1]), swings(24, 3, 20))
     middle = int(np.argmin(np.linalg.norm(known.V - [1.0, 0.0, 0.0], axis=1)))
-    found = of(known, (middle,) if has_leaf else ())
-    assert tuple(d.reason for d in found.dropped if d.part == 2) == dropped
+    leaves = (middle,) if has_leaf else ()
+    assert tuple(d.reason for d in of(known, leaves).dropped if d.part == 2) == dropped
+
+    body, parts = (
+        MovingSurface(known.V, known.F, known.x, known.area),
+        MovingParts(known.label, known.R, known.t, known.residual),
+    )
+    found = part_tree(body, parts)
+    state = Pruned(parts, found, found, np.arange(3), ())
+    after = without_flat_ends(body, state, np.array(leaves, dtype=np.int64), PRUNING.flat)
+    assert tuple(d.reason for d in after.dropped) == dropped
+    assert after.parts.label.max() == 2 - len(dropped)
+    assert (after is state) == (not dropped)
 
 
 @pytest.mark.parametrize(("slide", "dropped"), [(0.05, ()), (0.3, (SLIDING,))])
