@@ -136,7 +136,9 @@ def test_one_does_as_well_if_the_trunk_is_explained_and_no_other_joint_goes(bent
         left = extended.unexplained.copy()
         left[:, parts] *= factor * numerics.AS_WELL
         assert are_as_good(area, extended, extended._replace(unexplained=left), pairs) == good
-    assert not are_as_good(area, extended, extended._replace(shown=()), pairs)
+    for factor, good in ((0.99, True), (1.01, False)):
+        left = factor * numerics.AS_WELL_WITH_FEWER * extended.unexplained
+        assert are_as_good(area, extended, extended._replace(shown=(), unexplained=left), pairs) == good
     end = int(extended.place[6])
     more = extended._replace(shown=(*shown, end))
     assert are_as_good(area, extended, more, pairs)
