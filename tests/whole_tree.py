@@ -57,7 +57,7 @@ def joints_at_ends(
     """The joints at ends, judged in runs of frames as tasks judge them."""
     rings = end_rings(body.V, body.F, body.area, tree, np.isin(np.arange(len(tree.parents)), mirrored))
     fits, frames = _fits(body, tree, rings, confidence, surface, settings), _frames(body, tree, confidence, surface)
-    return end_joints(frames, rings, fits, body.takes, mirrored, settings)
+    return end_joints(frames, rings, fits, body.takes, settings)
 
 
 def fits_of_rings(

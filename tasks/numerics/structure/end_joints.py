@@ -6,7 +6,7 @@ surface of its own, so the hinge's turn in one frame agrees with that in the nex
 too far apart for that, two halves of the piece beyond must turn alike in each of them.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -101,7 +101,6 @@ def end_joints(
     rings: Sequence[EndRing],
     judged: Sequence[Fits],
     takes: Sequence[slice] | None = None,
-    mirrored: Collection[int] = (),
     settings: EndJointsSettings | None = None,
 ) -> list[EndJoint]:
     """The joints that the frames show within the last parts of limbs and within the trunk: at most one in a part, but two in
@@ -109,13 +108,12 @@ def end_joints(
 
     judged : by ring, how its part lies in the frames of `judged_frames`
     takes  : positions of the frames of each take, in order; None takes all as one
-    mirrored : parts, in the tree's order, that end limbs with a mirror image
     """
     chosen, count = settings or EndJointsSettings(), len(frames.tree.R)
     at, pairs = judged_frames(count, takes, chosen.most_frames)
     laid = [_RingFits(ring, fits, _inertia(frames.tree, ring, takes)) for ring, fits in zip(rings, judged, strict=True)]
     table = [_judged(frames, laid, pairs, span, chosen) for span in score_spans(count, takes)]
-    evident = evident_rings(frames.tree, rings, table, mirrored, chosen.evident)
+    evident = evident_rings(frames.tree, rings, table, chosen.evident)
     own = [laid[k] for k in evident]
     lay_rings(frames, np.setdiff1d(np.arange(count), at), [one.ring for one in own], [one.fits for one in own])
     joints = [_joint(frames.tree, _usual(laid[k], chosen), score) for k, score in evident.items()]
@@ -168,7 +166,7 @@ def _judged(
 
 def _inertia(tree: FirstTree, ring: EndRing, takes: Sequence[slice] | None) -> Turns:
     """How flesh that stays behind would turn a ring's hinge; asked at the ends of limbs with a mirror image alone."""
-    if not ring.is_bent:
+    if not ring.is_mirrored:
         return {}
     (cut, piece, _), R, t = ring, tree.R[:, ring.cut.part], tree.t[:, ring.cut.part]
     return inertial_turns(piece.V.mean(axis=0), cut.centre - piece.joint, R, t, takes)

@@ -24,14 +24,14 @@ Fits = dict[int, HingedFit]
 class EndRing(NamedTuple):
     """A ring across the last part of a limb or across the trunk.
 
-    piece   : points of its part
-    is_bent : whether its hinge is also laid bent, see `laid_hinged`: across the ends of limbs with a mirror image. Heads have
-              none, and bent hinges found false joints there
+    piece       : points of its part
+    is_mirrored : whether it lies across the end of a limb with a mirror image. There its hinge is also laid bent, see
+                  `laid_hinged`; of heads, which have none, bent hinges found false joints
     """
 
     cut: EndCut
     piece: Piece
-    is_bent: bool = False
+    is_mirrored: bool = False
 
 
 class EndRings(NamedTuple):
@@ -130,7 +130,7 @@ def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags
     """
     N = smoothed_normals(V, F)
     of = (V, F, area, tree.label, tree.parents, tree.rest)
-    at_ends = [_ring(V, N, tree, cut)._replace(is_bent=bool(mirrored[cut.part])) for cut in end_cuts(*of)]
+    at_ends = [_ring(V, N, tree, cut)._replace(is_mirrored=bool(mirrored[cut.part])) for cut in end_cuts(*of)]
     return [*at_ends, *(_ring(V, N, tree, cut) for cut in (*trunk_cuts(*of, mirrored), *limb_cuts(*of, pairs)))]
 
 
@@ -183,12 +183,12 @@ def lay_rings(frames: EndFrames, which: Ints, rings: Sequence[EndRing], fits: Se
     for f, target, there in frames.showing(which, rings):
         whole: dict[tuple[int, ...], PieceFit] = {}
         for k in there:
-            (cut, piece, is_bent), goal = rings[k], frames.goal(f, rings[k])
+            (cut, piece, is_mirrored), goal = rings[k], frames.goal(f, rings[k])
             of = (cut.part, cut.above, k) if cut.is_across_limb else (cut.part, cut.above)
             if of not in whole:
                 start = PiecePose(R[f, cut.part], t[f, cut.part], np.eye(3))
                 whole[of] = laid_as_one(piece, start, goal, target)
-            fits[k][f] = laid_hinged(piece, whole[of], goal, target, _nearest(fits[k], f), is_bent=is_bent)
+            fits[k][f] = laid_hinged(piece, whole[of], goal, target, _nearest(fits[k], f), is_bent=is_mirrored)
 
 
 def _nearest(known: Fits, f: int) -> Floats | None:

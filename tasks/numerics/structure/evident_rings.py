@@ -1,6 +1,6 @@
 """Which rings are joints, by what they show in the frames (ours, see `end_joints`)."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -66,17 +66,15 @@ def evident_rings(
     tree: FirstTree,
     rings: Sequence[EndRing],
     shown: Sequence[Sequence[RingEvidence]],
-    mirrored: Collection[int] = (),
     settings: EvidentRingsSettings | None = None,
 ) -> Scores:
     """The rings that are joints: one of a part at most, of one that holds both limbs of a pair one across each limb.
 
     shown    : by take, what every ring shows; a part's rings are judged in the take in which one of them shows most
-    mirrored : parts, in the tree's order, that end limbs with a mirror image
     """
     chosen = settings or EvidentRingsSettings()
     limbs = _across_limbs(rings, shown, chosen)
-    single = _apart_from(tree, rings, _across_parts(rings, shown, mirrored, chosen), limbs)
+    single = _apart_from(tree, rings, _across_parts(rings, shown, chosen), limbs)
     return {**_one_beside_each_joint(tree, rings, single), **limbs}
 
 
@@ -97,7 +95,6 @@ def joint_inwards(tree: FirstTree, cut: EndCut) -> int:
 def _across_parts(
     rings: Sequence[EndRing],
     shown: Sequence[Sequence[RingEvidence]],
-    mirrored: Collection[int],
     chosen: EvidentRingsSettings,
 ) -> Scores:
     """Of each part's rings with enough score the likeliest one, if it turns enough; rings across limbs of a pair left out."""
@@ -109,7 +106,7 @@ def _across_parts(
             best = max(shown, key=lambda row: max(row[k].score / least[k] for k in own))
             enough = [(_rank(rings[k], best[k]), k) for k in own if best[k].score >= least[k]]
             k = max(enough)[1] if enough else own[0]
-            if enough and _is_joint(rings[k], best[k], part in mirrored, chosen):
+            if enough and _is_joint(rings[k], best[k], chosen):
                 evident[k] = best[k].score
     return evident
 
@@ -129,7 +126,7 @@ def _across_limbs(rings: Sequence[EndRing], shown: Sequence[Sequence[RingEvidenc
             ((row, two) for row in shown for two in levels.values()), key=lambda one: sum(one[0][k].score for k in one[1])
         )
         two = sorted(two, key=lambda k: row[k].score)
-        turn = all(_is_joint(rings[k], row[k], False, chosen) for k in two)
+        turn = all(_is_joint(rings[k], row[k], chosen) for k in two)
         if turn and row[two[-1]].score >= chosen.least_score_across_limbs:
             evident |= {k: row[k].score for k in two}
     return evident
@@ -183,9 +180,9 @@ def _is_short(ring: EndRing, radii: float) -> bool:
     return bool(np.linalg.norm(ring.cut.centre - ring.piece.joint) < radii * ring.cut.radius)
 
 
-def _is_joint(ring: EndRing, shown: RingEvidence, is_mirrored: bool, chosen: EvidentRingsSettings) -> bool:
+def _is_joint(ring: EndRing, shown: RingEvidence, chosen: EvidentRingsSettings) -> bool:
     """Whether both pieces turn enough, and the nearer one is no slice of a joint that is there already."""
-    short = chosen.slice_length_if_mirrored if is_mirrored else chosen.slice_length
+    short = chosen.slice_length_if_mirrored if ring.is_mirrored else chosen.slice_length
     is_clear = ring.cut.apart >= chosen.least_apart if ring.cut.hung else not _is_short(ring, short)
-    is_slice = not is_clear and (bool(ring.cut.hung) or is_mirrored or shown.near < shown.far)
+    is_slice = not is_clear and (bool(ring.cut.hung) or ring.is_mirrored or shown.near < shown.far)
     return shown.far >= chosen.degrees and shown.near >= chosen.nearer and not is_slice

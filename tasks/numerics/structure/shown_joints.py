@@ -97,7 +97,7 @@ def _with_trunk_divided_anew(
     frames, runs = evidence.frames(body, one), judged_runs(len(body.x), body.takes, EndJointsSettings())
     rings = end_rings(body.V, body.F, body.area, one, of_mirrored_limbs(one, pairs))
     rings = [ring for ring in rings if ring.cut.part == one.label[own[0]]]
-    found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=EndJointsSettings())
+    found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes)
     after = _with_closer_joints(body, one, found, own, pairs, evidence, stays=True)
     trunk = joints_between_pairs(rooted(after), pairs)
     return _with_ends_of_trunk_as_aligned(body, after, trunk, evidence) if len(trunk) > 1 else None
@@ -137,11 +137,10 @@ def _with_shown_joints(
     The trunk is asked once more with rings that lie closer together: between those of `end_rings` a joint may be missed, and a
     part that one joint divides may hold two.
     """
-    chosen, mirrored = _settings(tree, pairs), of_mirrored_limbs(tree, pairs)
+    chosen = _settings(tree, pairs)
     rings, frames = all_end_rings(body.V, body.F, body.area, tree, pairs), evidence.frames(body, tree)
     fits = known.laid(frames, judged_runs(len(body.x), body.takes, chosen), rings)
-    ends = np.unique(tree.label[pairs.tip])
-    found = end_joints(frames, rings, fits, body.takes, ends[mirrored[ends]].tolist(), chosen)
+    found = end_joints(frames, rings, fits, body.takes, chosen)
     return _with_closer_joints(body, tree, found, np.arange(len(body.V)), pairs, evidence)
 
 
@@ -173,7 +172,7 @@ def _with_closer_joints(
         asked = parts.tolist() if stays else _with_neighbours(tree, parts)
         limbs = pairs if found and not stays else NO_PAIRS
         rings = closer_rings(body.V, body.F, body.area, tree, mirrored, asked, limbs)
-        found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, settings=closer)
+        found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, closer)
         if not found:
             return tree
         if not stays:

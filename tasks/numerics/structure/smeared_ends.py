@@ -33,7 +33,7 @@ def without_smeared_ends(
         one = without_joint(body, tree, int(tree.label[vertex]), evidence, SMEARED)
         part, frames = int(one.label[vertex]), evidence.frames(body, one)
         rings = [ring for ring in all_end_rings(body.V, body.F, body.area, one, pairs) if ring.cut.part == part]
-        if end_joints(frames, rings, known.laid(frames, runs, rings), body.takes, [part], chosen):
+        if end_joints(frames, rings, known.laid(frames, runs, rings), body.takes, chosen):
             tree = one
     return tree
 

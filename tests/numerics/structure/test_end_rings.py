@@ -77,15 +77,15 @@ def test_hinges_at_ends_of_limbs_with_a_mirror_image_are_bent_and_no_others(monk
     body, tree = trunk(turning(0.0))
     mirrored = np.isin(np.arange(4), MIRRORED)
     rings = end_rings(body.V, body.F, body.area, tree, mirrored)
-    assert {(bool(ring.cut.hung), ring.cut.part in MIRRORED) for ring in rings if ring.is_bent} == {(False, True)}
-    assert all(ring.is_bent for ring in rings if not ring.cut.hung and ring.cut.part in MIRRORED)
-    assert not any(ring.is_bent for ring in end_rings(body.V, body.F, body.area, tree, np.zeros(4, np.bool_)))
+    assert {(bool(ring.cut.hung), ring.cut.part in MIRRORED) for ring in rings if ring.is_mirrored} == {(False, True)}
+    assert all(ring.is_mirrored for ring in rings if not ring.cut.hung and ring.cut.part in MIRRORED)
+    assert not any(ring.is_mirrored for ring in end_rings(body.V, body.F, body.area, tree, np.zeros(4, np.bool_)))
     asked: list[bool] = []
     whole = module.laid_hinged
     monkeypatch.setattr(module, "laid_hinged", lambda *of, is_bent: asked.append(is_bent) or whole(*of, is_bent=is_bent))
     frames = EndFrames.of(tree, body.area, np.arange(1), np.ones((1, len(body.V))), Frames(turning(0.0)).prepared(body.size))
     lay_rings(frames, np.arange(1), rings, [{} for _ in rings])
-    assert asked == [ring.is_bent for ring in rings]
+    assert asked == [ring.is_mirrored for ring in rings]
 
 
 def test_closer_rings_lie_half_as_far_apart_in_the_parts_that_are_asked() -> None:

@@ -23,7 +23,8 @@ def ring(part: int, height: float, hung: tuple[int, ...] = (), above: int = 1, l
     cut = SimpleNamespace(
         part=part, above=above, hung=hung, centre=centre, radius=1.0, apart=2.0, level=level, is_across_limb=level >= 0
     )
-    return SimpleNamespace(cut=cut, piece=SimpleNamespace(joint=centre - [0.0, 0.0, 10.0]), is_bent=False)
+    is_mirrored = part in MIRRORED and not hung and level < 0
+    return SimpleNamespace(cut=cut, piece=SimpleNamespace(joint=centre - [0.0, 0.0, 10.0]), is_mirrored=is_mirrored)
 
 
 def shows(score: float, gain: float = 1.1, far: float = 9.0, near: float = 9.0) -> RingEvidence:
@@ -32,7 +33,7 @@ def shows(score: float, gain: float = 1.1, far: float = 9.0, near: float = 9.0) 
 
 def found(rings: Sequence[tuple[Any, float]], **settings: float) -> dict[int, float]:
     evidence = [shows(score) for _, score in rings]
-    return evident_rings(TREE, [one for one, _ in rings], [evidence], MIRRORED, EvidentRingsSettings(**settings))
+    return evident_rings(TREE, [one for one, _ in rings], [evidence], EvidentRingsSettings(**settings))
 
 
 def limbs(*scores: tuple[float, float], part: int = 0) -> list[tuple[Any, float]]:

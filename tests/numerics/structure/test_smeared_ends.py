@@ -147,7 +147,7 @@ def test_both_limbs_may_lose_one(monkeypatch: pytest.MonkeyPatch) -> None:
         unexplained=np.zeros((frames, count)),
     )
     parts = list[int]()
-    monkeypatch.setattr(smeared_ends, "end_joints", lambda frames, rings, fits, takes, own, chosen: parts.extend(own) or [1])
+    monkeypatch.setattr(smeared_ends, "end_joints", lambda _, rings, *of: parts.extend({r.cut.part for r in rings}) or [1])
     after = without_smeared_ends(of.body, tree, KnownFits({}), NO_PAIRS, of.evidence)
     assert parts == [1, 2]
     assert after.parents.tolist() == [-1, 0, 0]
