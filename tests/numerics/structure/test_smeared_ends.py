@@ -102,10 +102,13 @@ def test_it_stays_far_from_the_joint_before() -> None:
     assert asked(of._replace(tree=of.tree._replace(rest=far))).parents.tolist() == [-1, 0, 1]
 
 
-def test_it_stays_on_a_limb_without_a_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
-    of = smeared()
+@pytest.mark.parametrize(("height", "stays"), [(1.4, True), (1.1, False)])
+def test_on_a_limb_without_a_mirror_image_it_must_lie_closer(
+    height: float, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of = smeared(height)
     monkeypatch.setattr(smeared_ends, "of_mirrored_limbs", lambda tree, _: np.zeros(len(tree.parents), np.bool_))
-    assert asked(of) is of.tree
+    assert (asked(of) is of.tree) == stays
 
 
 def test_what_is_known_stays_that_of_the_frames_that_are_judged() -> None:
