@@ -15,7 +15,7 @@ from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSett
 from kinetree.tasks.numerics.structure.end_rings import Fits, closer_rings, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.inertial_ends import without_inertial_ends
+from kinetree.tasks.numerics.structure.inertial_joints import without_inertial_joints
 from kinetree.tasks.numerics.structure.joint_partners import joints_between_pairs
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
@@ -44,7 +44,7 @@ def with_end_joints(
 ) -> FirstTree:
     """The tree with all joints that the frames' surfaces show.
 
-    Last joints of limbs with a mirror image whose turn inertia explains go first (`without_inertial_ends`).
+    Joints within limbs with a mirror image whose turn inertia explains go first (`without_inertial_joints`).
     The last joint of a limb with a mirror image that lies close to the one before, as a ball of the foot close to the ankle,
     goes first if the surfaces show one without it (`without_smeared_ends`).
 
@@ -60,7 +60,7 @@ def with_end_joints(
     """
     pairs, evidence = limb_pairs(body.V, body.F, leaves), SurfaceEvidence(surface, confidence, noise)
     known = KnownFits.of(all_end_rings(body.V, body.F, body.area, tree, pairs), fits)
-    tree = without_inertial_ends(body, tree, pairs, evidence)
+    tree = without_inertial_joints(body, tree, pairs, evidence)
     left = without_smeared_ends(body, tree, known, pairs, evidence)
     extended = _with_shown_joints(body, left, known, pairs, evidence)
     if not are_replaced(tree, left, extended):
