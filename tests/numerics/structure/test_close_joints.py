@@ -139,6 +139,9 @@ def test_one_does_as_well_if_the_trunk_is_explained_and_no_other_joint_goes(bent
     for factor, good in ((0.99, True), (1.01, False)):
         left = factor * numerics.AS_WELL_WITH_FEWER * extended.unexplained
         assert are_as_good(area, extended, extended._replace(shown=(), unexplained=left), pairs) == good
+        drift = factor * numerics.DRIFT_WITH_FEWER * (extended.drift + 0.01)
+        before = extended._replace(drift=extended.drift + 0.01)
+        assert are_as_good(area, before, extended._replace(shown=(), drift=drift), pairs) == good
     end = int(extended.place[6])
     more = extended._replace(shown=(*shown, end))
     assert are_as_good(area, extended, more, pairs)
