@@ -25,8 +25,8 @@ AS_WELL_WITH_FEWER = 1.05
 were false."""
 
 DRIFT_WITH_FEWER = 1.5
-"""The largest drift of a joint then, in the largest before, at most: of person 770, who has 0.97, shoulders would drift ten times
-as far. What is left unexplained does not show that."""
+"""The largest drift of a joint then, in the largest before, at most: of person 770, who has 0.97, shoulders would drift ten
+times as far. What is left unexplained does not show that."""
 
 
 def close_joints(tree: FirstTree, extended: FirstTree, pairs: LimbPairs) -> list[int]:

@@ -43,10 +43,10 @@ class PruningSettings(NamedTuple):
     flap: float = 3.75
     """What a last part without a leaf needs of it, multiple: few bodies have a limb there. Not recorded. Halved or doubled
     it moves no joint of two generated bodies."""
-    flat: float = 0.85
+    flat: float = 1.0
     """How far the surface of a last part without a leaf reaches beyond its border, in radii of the border; below it the part is
-    flesh beside a joint. Chosen on quadrupeds 0, 1, 3, people 716 and 770, whose false parts had 0.23 to 0.26 and 0.61; all
-    other last parts of 35 bodies had 1.24 and more, of 60 people and generated bodies 1.6 and more."""
+    flesh beside a joint: a flat disc reaches so far. False parts had 0.23 to 0.26 and 0.61 (quadrupeds 0, 1, 3, people 716 and
+    770), all other last parts of 35 bodies 1.24 and more, of 60 people and generated bodies 1.6 and more."""
     clear_ratio: float = 3.0
     """Ratio from which on a joint is clear: a part that has a clear joint stays when another of its joints is poor. Not
     recorded. Halved or doubled it moves no joint of two generated bodies; it guards parts between a good joint and a poor

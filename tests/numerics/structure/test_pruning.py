@@ -107,15 +107,19 @@ def test_patch_that_slides_is_no_part() -> None:
     assert found.dropped == (Dropped(3, SLIDING),)
 
 
-@pytest.mark.parametrize(("half_length", "has_leaf", "dropped"), [(2.5, False, (FLESH,)), (2.5, True, ()), (0.7, False, ())])
+@pytest.mark.parametrize(
+    ("shape", "has_leaf", "dropped"),
+    [("strip", False, (FLESH,)), ("strip", True, ()), ("square", False, (FLESH,)), ("end", False, ())],
+)
 def test_last_part_that_hardly_reaches_beyond_its_border_is_flesh_unless_it_has_a_leaf(
-    half_length: float, has_leaf: bool, dropped: tuple[str, ...]
+    shape: str, has_leaf: bool, dropped: tuple[str, ...]
 ) -> None:
-    """A strip along the tube, 1.1 wide, and a square turn alike about their own middle."""
+    """A strip along the tube, 1.1 wide, a square and the last 1.6 of the tube turn alike."""
     tube = chain((-4.0,))
-    strip = (np.abs(tube.V[:, 2]) < half_length) & (tube.V[:, 0] > 0.8)
-    W = np.eye(3)[np.where(strip, 2, tube.label)]
-    joints = np.vstack([tube.joints, [0.9, 0.0, 0.0]])
+    (x, _, z) = tube.V.T
+    own = {"strip": (np.abs(z) < 2.5) & (x > 0.8), "square": (np.abs(z) < 0.7) & (x > 0.8), "end": z > 3.4}[shape]
+    W = np.eye(3)[np.where(own, 2, tube.label)]
+    joints = np.vstack([tube.joints, [0.9, 0.0, 0.0] if shape != "end" else [0.0, 0.0, 3.4]])
     known = moved(tube.V, tube.F, W, joints, np.array([-1, 0, 1]), swings(24, 3, 20))
     middle = int(np.argmin(np.linalg.norm(known.V - [1.0, 0.0, 0.0], axis=1)))
     leaves = (middle,) if has_leaf else ()
