@@ -15,20 +15,20 @@ from kinetree.tasks.numerics.structure.tree_joints import Cut
 
 def test_its_joint_goes_where_the_limb_turns() -> None:
     body, tree = seen("left")
-    left = agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE)
+    left = agreed_tree._without_flesh(body, tree, LEAVES, pairs(), ONES, TREE)
     (before, other), (after, same) = hips(tree), hips(left)
     assert after < 0.5 * before
     assert same == pytest.approx(other, abs=0.2)
     assert ends(left) == ends(tree)
     trust = np.random.default_rng(0).uniform(size=ONES.shape)
-    unsure = agreed_tree._without_flesh(body, tree, pairs(), trust, TREE)
+    unsure = agreed_tree._without_flesh(body, tree, LEAVES, pairs(), trust, TREE)
     share = confident_share(unsure.label, body.area, trust, FRAMES, len(unsure.parents))
     assert unsure.certain_share == pytest.approx(share)
 
 
 def test_the_trunk_is_fitted_anew() -> None:
     body, tree = seen("left")
-    cut = agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE)
+    cut = agreed_tree._without_flesh(body, tree, LEAVES, pairs(), ONES, TREE)
     chest = [int(one.parents[thigh(one, "left")]) for one in (tree, cut)]
     assert np.abs(tree.t[:, chest[0]] - cut.t[:, chest[1]]).max() > 0.0
 
@@ -42,12 +42,12 @@ def test_tree_stays_if_a_joint_would_go(monkeypatch: pytest.MonkeyPatch) -> None
         return frozenset(sorted(real(found), key=sorted)[: 2 if len(asked) == 2 else None])
 
     monkeypatch.setattr(trunk_flesh, "joints_of", of_fewer)
-    assert agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE) is tree
+    assert agreed_tree._without_flesh(body, tree, LEAVES, pairs(), ONES, TREE) is tree
 
 
 def test_nothing_changes_where_there_is_none() -> None:
     body, tree = seen()
-    assert agreed_tree._without_flesh(body, tree, pairs(), ONES, TREE) is tree
+    assert agreed_tree._without_flesh(body, tree, LEAVES, pairs(), ONES, TREE) is tree
 
 
 @pytest.mark.parametrize("is_aligned", [True, False])
