@@ -37,12 +37,13 @@ class EvidentRingsSettings(NamedTuple):
     to 0.062."""
     least_score_across_limbs: float = 0.05
     """The same across both limbs of a pair, of the clearer one. Not varied: chosen with `least_score_in_trunk`."""
-    least_apart: float = 0.8
+    least_apart: float = 0.6
     """Distance of a ring across the trunk from the nearest of the part's joints, in radii of the ring, at least: the likeliest
-    ring of a part that lies nearer says that the joint that is there is a little off, or that flesh between two joints bends.
-    Joints amid two of the trunk that are right, false ones, lie at 0.61 to 0.76 (people 10, 15, 18, 710, 757, 767), true ones
-    that rings alone show at 0.93 and more, but one at 0.68 (755), which is found by others. Was 0.6; rings at 0.66 and 0.67
-    within the chests of four-legged 60 and 4 were false."""
+    ring of a part that lies nearer says that the joint that is there is a little off."""
+    least_apart_if_closer: float = 0.75
+    """The same of rings that lie closer together, see `extended_tree`. Joints that these alone show lie at 1.07 to 1.58. Where
+    nothing turns, within the chests of four-legged 4 and 60, rings at 0.67 and 0.66 score 0.0595 and 0.0566, those farther
+    away 0.0465 at most. Chosen on the same bodies and on people 86 to 129, humans, four-legged and random trees 65 to 74."""
     nearer: float = 4.0
     """Root mean square turn of the nearer piece against the part above, degrees, as `degrees`, at least: where it turns less it
     belongs to the part above, and the joint that is there lies at a wrong place. There it was 3.4° at most, at true joints

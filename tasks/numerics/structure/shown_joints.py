@@ -166,12 +166,13 @@ def _with_closer_joints(
             tree = extended_tree(body, tree, found, evidence.confidence, evidence.noise)
             body = tree.with_ends(body)
         chosen = _settings(tree, pairs)
+        closer = chosen._replace(evident=chosen.evident._replace(least_apart=chosen.evident.least_apart_if_closer))
         mirrored, frames = of_mirrored_limbs(tree, pairs), evidence.frames(body, tree)
         parts = np.unique(tree.label[own])
         asked = parts.tolist() if stays else _with_neighbours(tree, parts)
         limbs = pairs if found and not stays else NO_PAIRS
         rings = closer_rings(body.V, body.F, body.area, tree, mirrored, asked, limbs)
-        found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, chosen)
+        found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, closer)
         if not found:
             return tree
         if not stays:

@@ -55,11 +55,14 @@ def test_vertices_beside_both_joints_lie_on_the_frames() -> None:
 
 def test_all_of_the_trunk_is_asked_once_more_and_then_what_is_divided_and_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, list[int]]] = []
-    whole = numerics.closer_rings
+    apart: list[float] = []
+    whole, judged = numerics.closer_rings, numerics.end_joints
     monkeypatch.setattr(numerics, "closer_rings", lambda *of: asked.append((len(of[3].parents), sorted(of[5]))) or whole(*of))
+    monkeypatch.setattr(numerics, "end_joints", lambda *of: apart.append(of[4].evident.least_apart) or judged(*of))
     _, after = of_bent_trunk((-1.6, 1.1))
     assert [count for count, _ in asked] == [5, 6]
     assert asked[0][1] == [0, 1, 2, 3, 4]
+    assert apart == [EvidentRingsSettings().least_apart, *2 * [EvidentRingsSettings().least_apart_if_closer]]
     assert set(after.shown) <= set(asked[1][1])
     tree = after._replace(parents=np.array([-1, 0, 1, 2, 3, 4]))
     assert numerics._with_neighbours(tree, np.array([2, 3])) == {1, 2, 3, 4}
@@ -137,7 +140,7 @@ class Midway(NamedTuple):
     true: Known
 
 
-FAR = EndJointsSettings(EvidentRingsSettings(least_apart=1.5))
+FAR = EndJointsSettings(EvidentRingsSettings(least_apart=1.5, least_apart_if_closer=1.5))
 """A tube of radius 1 bends over one radius, so that joints 1.1 from the one at 0 count as near it here."""
 
 
