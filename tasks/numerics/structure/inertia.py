@@ -18,8 +18,8 @@ joints in hands have 2.2 to 6.0, one with 12,000 vertices 10 (person 711)."""
 CLEAR = 0.25
 """Share of the square of all turning that inertia explains, from which on it counts in full; below, in proportion: where noise
 turns a toe far, the little that agrees may be in step with the foot by chance. In hands it explains 0.25 to 0.89 of the turn of
-false joints (fourteen people), of toes and fingers of a rigged body and of balls of feet that are hardly seen 0.00 to 0.17, of
-balls of people who run up to 0.66."""
+false joints (eleven rings of ten people), of toes and fingers of a rigged body and of balls of feet that are hardly seen 0.00
+to 0.17, of balls of people who run up to 0.66."""
 
 Turns = dict[int, Floats]
 """By frame, (xyz,) a turn as a vector in the reference's axes."""

@@ -1,8 +1,10 @@
 """Joints within limbs that are none: soft flesh that stays behind its bone bends there (ours, see `inertia`)."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.inertia import Turns, beyond_inertia, inertial_turns
@@ -34,7 +36,8 @@ def without_inertial_joints(body: MovingSurface, tree: FirstTree, pairs: LimbPai
 
     tree : without joints that surfaces alone show
     """
-    flesh = [part for part in _within_limbs(tree, pairs) if _is_flesh(body, tree, part, evidence)]
+    visible = evidence.frames(body, tree).visible
+    flesh = [part for part in _within_limbs(tree, pairs) if _is_flesh(body, tree, part, visible)]
     for vertex in [int(np.flatnonzero(tree.label == part)[0]) for part in flesh]:
         tree = _as_one(body, tree, int(tree.label[vertex]), evidence)
     return tree
@@ -47,10 +50,9 @@ def _within_limbs(tree: FirstTree, pairs: LimbPairs) -> list[int]:
     return np.flatnonzero(is_within & mirrored & mirrored[tree.parents]).tolist()
 
 
-def _is_flesh(body: MovingSurface, tree: FirstTree, part: int, evidence: SurfaceEvidence) -> bool:
+def _is_flesh(body: MovingSurface, tree: FirstTree, part: int, visible: Mapping[int, Flags]) -> bool:
     """Whether some take says that inertia explains the turn of a joint, and none that it does not."""
     above, settings = int(tree.parents[part]), EndJointsSettings()
-    visible = evidence.frames(body, tree).visible
     turn = {f: tree.R[f, above].T @ tree.R[f, part] for f in visible if visible[f][part]}
     _, follow = judged_frames(len(tree.R), body.takes, len(tree.R))
     inertia, judged = _inertia(body, tree, part), list[bool]()

@@ -22,9 +22,10 @@ from kinetree.tasks.numerics.structure.vertex_reassignment import reassigned
 FLESH, STILL, SLIDING, UNEVIDENT, UNPAIRED, ALONE, MIDWAY, SMEARED = (
     "flesh", "still", "sliding", "unevident", "unpaired", "alone", "midway", "smeared"
 )  # fmt: skip
-"""Why a part is dropped: a ring of flesh around a joint, turns too little, drifts too much, not shown by the frames, a ring of
-flesh that the mirror image of its limb lacks, or that no other cut has, and (`shown_joints`) because its joint lay midway
-between two that the frames show, or, at the end of a limb, close to the joint before, where they show another without it."""
+"""Why a part is dropped: a ring of flesh around a joint or beyond a bend of flesh (`inertial_joints`), turns too little, drifts
+too much, not shown by the frames, a ring of flesh that the mirror image of its limb lacks, or that no other cut has, and
+(`shown_joints`) because its joint lay midway between two that the frames show, or, at the end of a limb, close to the joint
+before, where they show another without it."""
 
 NO_PART = -1
 """`Pruned.origin` of a part that the cut does not have: a hidden bone, or a limb that was cut off another or off the trunk."""

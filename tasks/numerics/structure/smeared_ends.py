@@ -22,8 +22,8 @@ too, but an elbow beyond a slice of the shoulder goes astray."""
 
 CLOSE_IF_SINGLE = 1.3
 """The same of limbs without a mirror image, as necks: a cut may have one more joint amid a soft neck (person 754, at 1.1), so
-that the ring beyond, which shows the head's, is one more. Of 130 people, generated and recorded bodies no other limb has one
-below 1.34."""
+that the ring beyond, which shows the head's, is one more. Of 130 other people, generated and recorded bodies, as captured, no
+limb has one below 1.34."""
 
 
 def without_smeared_ends(
