@@ -92,7 +92,7 @@ def agreed_tree(
     others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
     tree = _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings)
     if confidence is not None:
-        tree = _without_slices(body, tree, trunk_slices(body, tree, leaves), confidence, settings)
+        tree = _without_slices(body, tree, trunk_slices(body, tree, leaves, pairs), confidence, settings)
         slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
         tree = _without_slices(body, tree, slices, confidence, settings)
         tree = _without_flesh(body, tree, leaves, pairs, confidence, settings)
@@ -134,7 +134,9 @@ def _without_slices(
     start = _pruned(body, tree)
     tried = [_joints_without(body, tree, start, slices, [share] * len(slices), confidence, settings) for share in chosen.shares]
     between = [_between(joints) for joints in tried]
-    drift = np.array([[drifts.get(frozenset((one.above, one.below)), np.inf) for one in slices] for drifts in between])
+    drift = np.array(
+        [[max(drifts.get(frozenset((one.above, k)), np.inf) for k in one.below) for one in slices] for drifts in between]
+    )
     first = (drift <= chosen.looser * drift.min(axis=0)).argmax(axis=0)
     if (first == first[0]).all():
         return _of_cut(tree, tried[first[0]])
@@ -171,17 +173,15 @@ def _joints_without(
     shares : (slice,) see `MirroredSlicesSettings`
     """
     for one, share in zip(slices, shares, strict=True):
-        gone, above, below = (int(np.flatnonzero(left.origin == part)[0]) for part in (one.part, one.above, one.below))
-        left = left._replace(parts=_neighbours_joined(left.parts, gone, frozenset((above, below))))
-        left = shared_out(body, left, gone, np.where(one.inwards < share, below, above), FLESH)
+        gone, above, *below = (int(np.flatnonzero(left.origin == k)[0]) for k in (one.part, one.above, *one.below))
+        left = left._replace(parts=_neighbours_joined(left.parts, gone, frozenset(frozenset((above, k)) for k in below)))
+        left = shared_out(body, left, gone, np.where(one.inwards < share, below[0], above), FLESH)
     return _joints(body, tree, left, confidence, settings)
 
 
-def _neighbours_joined(parts: MovingParts, gone: int, pair: frozenset[int]) -> MovingParts:
-    """The same parts; where joints of one that goes are to stay, so is that of its neighbours in its place."""
-    joined, by_shape = (
-        pairs | {pair} if any(gone in one for one in pairs) else pairs for pairs in (parts.joined, parts.by_shape)
-    )
+def _neighbours_joined(parts: MovingParts, gone: int, new: PartPairs) -> MovingParts:
+    """The same parts; where joints of one that goes are to stay, so are those of its neighbours in its place."""
+    joined, by_shape = (pairs | new if any(gone in one for one in pairs) else pairs for pairs in (parts.joined, parts.by_shape))
     return parts._replace(joined=joined, by_shape=by_shape)
 
 

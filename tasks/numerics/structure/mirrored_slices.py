@@ -46,9 +46,10 @@ class MirroredSlicesSettings(NamedTuple):
     """Of parts that touch each other, as those about a pelvis do: the two halves of a wolf's have lengths of 2.5 and 2.9, and
     mixtures of 2.8 and 3.9; a pelvis that one limb hangs on is 2.4 times as long as flesh above the other hip. True links from
     the pelvis to both hips of the dance are 0.8, 1.03 and 1.13 long, flesh above the hips of person 124 0.9."""
-    apart: SliceLimits = SliceLimits(1.0, 3.9, 2.5, 5.2)
+    apart: SliceLimits = SliceLimits(0.7, 3.9, 2.5, 5.2)
     """Of parts that do not. Slices beside shoulders have lengths of 1.0 to 3.8, the longer one of 1.17 and more, at most 2.4
-    times the other's, and mixtures of 1.3 to 5.1. The shortest upper arms and thighs have lengths of 4.8 and more."""
+    times the other's, and mixtures of 1.3 to 5.1; flesh above the hips of person 740, who runs, 0.76 and 0.77, and 1.7 and 3.0.
+    The shortest upper arms and thighs have lengths of 4.8 and more."""
     opposed: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 5.2)
     """Of parts that touch each other and move as two, as flesh of two thighs does and links from a pelvis to both hips do not;
     they may be as short as can be. People 556 and 604, who run, and 628 and 704 have such parts, with lengths of 0.5 to 1.4 and
@@ -88,14 +89,15 @@ class MirroredSlicesSettings(NamedTuple):
 class Slice(NamedTuple):
     """A part that is a slice.
 
-    part, above, below : its place in the tree, and those of its neighbours
-    inwards            : (vertex,) distance of every vertex from its outer joint, in that from its inner joint; infinite for
-                         those that lie before the inner joint
+    part, above : its place in the tree, and that of the part that it hangs on
+    below       : those of the parts that hang on it
+    inwards     : (vertex,) distance of every vertex from its outer joint, in that from its inner joint; infinite for those that
+                  lie before the inner joint, and where there are several outer ones
     """
 
     part: int
     above: int
-    below: int
+    below: tuple[int, ...]
     inwards: Floats
 
 
@@ -128,7 +130,7 @@ def mirrored_slices(
                 break
     for limb in (limb for limbs in of_pairs for limb in limbs[:2]):
         for each in _within(body, tree, limb, confidence, chosen):
-            if not found.keys() & {each.above, each.below}:
+            if not found.keys() & {each.above, *each.below}:
                 found[each.part] = each
     return [found[part] for part in sorted(found)]
 
@@ -213,15 +215,16 @@ def slice_between(body: MovingSurface, tree: FirstTree, below: int, part: int) -
     inner, outer = (np.linalg.norm(away, axis=1) for away in (to_inner, to_outer))
     is_before = to_inner @ (tree.rest[below] - tree.rest[part]) <= 0.0
     inwards = np.where(is_before, np.inf, outer / np.maximum(inner, 1e-9 * body.size))
-    return Slice(part, int(tree.parents[part]), below, inwards)
+    return Slice(part, int(tree.parents[part]), (below,), inwards)
 
 
 def _mixture(body: MovingSurface, tree: FirstTree, one: Slice, confidence: Floats) -> float:
-    """What mixtures of the motions above and below a part leave of it, in what mixtures of its own with either leave.
+    """What mixtures of the motions above and below a part leave of it, in what mixtures of its own with either leave; of parts
+    with one below.
 
     Infinite where nothing of it is certain.
     """
-    own, motions = tree.label == one.part, (one.above, one.part, one.below)
+    own, motions = tree.label == one.part, (one.above, one.part, one.below[0])
     if not confidence[:, own].any():
         return np.inf
     above, part, below = (np.einsum("fxy,vy->fvx", tree.R[:, k], body.V[own]) + tree.t[:, None, k] for k in motions)
