@@ -4,12 +4,16 @@ An alignment spreads the turn of a spine over the trunk, so that a cut may have 
 the true one as one more, if it lies far enough away.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats
+from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
+from kinetree.tasks.numerics.structure.end_rings import EndRing
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.joint_partners import joints_between_pairs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
-from kinetree.tasks.numerics.structure.surface_evidence import of_mirrored_limbs
+from kinetree.tasks.numerics.structure.surface_evidence import of_mirrored_limbs, rooted
 
 CLOSE = 1.0
 """Distance of a joint from one of the trunk that the surfaces show, in radii of the smaller border, below which they are asked
@@ -41,6 +45,41 @@ def close_joints(tree: FirstTree, extended: FirstTree, pairs: LimbPairs) -> list
             place[int(tree.place[given])] = int(extended.place[given])
     apart = {joint: _radii_apart(extended, own) for joint, own in place.items()}
     return sorted((joint for joint in apart if apart[joint] < CLOSE), key=lambda joint: apart[joint])
+
+
+def amid_two(extended: FirstTree, pairs: LimbPairs) -> list[int]:
+    """Joints that surfaces show within a part of the trunk that lies between two of its joints, as between pelvis and chest.
+
+    extended : a tree with joints that surfaces show
+    """
+    trunk = joints_between_pairs(rooted(extended), pairs)
+    meet = _meeting(extended, trunk)
+    return [k for k in extended.shown if k in trunk and min(meet[k], meet[extended.parents[k]]) > 1]
+
+
+def are_crowded(extended: FirstTree, pairs: LimbPairs) -> bool:
+    """Whether one of `amid_two` lies closer than `CLOSE` to one of the two.
+
+    Where a short spine bends at both ends, all flesh between them bends, so that surfaces show a joint more amid them.
+    """
+    trunk = joints_between_pairs(rooted(extended), pairs)
+    for k in amid_two(extended, pairs):
+        beside = [j for j in trunk if j != k and {j, int(extended.parents[j])} & {k, int(extended.parents[k])}]
+        nearest = min(float(np.linalg.norm(extended.rest[j] - extended.rest[k])) for j in beside)
+        if nearest < CLOSE * extended.radius[k]:
+            return True
+    return False
+
+
+def roomy_rings(tree: FirstTree, rings: Sequence[EndRing], pairs: LimbPairs) -> list[EndRing]:
+    """The rings that lie farther from the joints of their part, if this lies between two joints of the trunk."""
+    is_between = _meeting(tree, joints_between_pairs(rooted(tree), pairs)) > 1
+    return [ring for ring in rings if not is_between[ring.cut.part] or ring.cut.apart >= CLOSE]
+
+
+def _meeting(tree: FirstTree, joints: Ints) -> Ints:
+    """(part,) how many of some joints each part has."""
+    return np.bincount(np.concatenate([joints, tree.parents[joints]]), minlength=len(tree.parents))
 
 
 def are_as_good(area: Floats, extended: FirstTree, without: FirstTree, pairs: LimbPairs) -> bool:

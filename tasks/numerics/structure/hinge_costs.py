@@ -1,6 +1,6 @@
 """Pairs of parts laid on the frames' surfaces as one piece with a hinge, at several places of their limb (ours)."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -37,16 +37,19 @@ class HingedLimb(NamedTuple):
 
 
 def hinged_limbs(
-    V: Floats, F: Ints, area: Floats, tree: FirstTree, settings: HingePlacesSettings | None = None
-) -> list[HingedLimb]:
+    V: Floats, F: Ints, area: Floats, tree: FirstTree, settings: HingePlacesSettings | None = None,
+    joints: Collection[int] | None = None,
+) -> list[HingedLimb]:  # fmt: skip
     """The joints whose bones are nearly long and straight enough, with the points of their parts.
 
     V, F, area : (vertex, xyz) reference, mesh unit · (face, corner) · (vertex,) mesh unit²
+    joints     : which are asked; None asks all
     """
     chosen, N, limbs = settings or HingePlacesSettings(), smoothed_normals(V, F), []
     edge = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     nearly = [of._replace(length=of.margin * of.length, straight=of.margin * of.straight) for of in (chosen, chosen.of_short)]
-    for joint in sorted({*tree.label.tolist()} - {0}):
+    asked = {*tree.label.tolist()} - {0}
+    for joint in sorted(asked if joints is None else asked & {*joints}):
         end = _end(V, tree, joint)
         axis = next((axis for of in nearly if (axis := limb_axis(tree, tree.rest, joint, end, of)) is not None), None)
         if axis is not None:
@@ -58,13 +61,13 @@ def hinged_limbs(
 
 def hinge_costs(
     V: Floats, F: Ints, area: Floats, tree: FirstTree, surfaces: Mapping[int, Target],
-    settings: HingePlacesSettings | None = None,
+    settings: HingePlacesSettings | None = None, joints: Collection[int] | None = None,
 ) -> HingeCosts:  # fmt: skip
     """Lays the parts at every joint of `hinged_limbs` on surfaces, with a hinge at each place.
 
     surfaces : by place among the frames, prepared surfaces
     """
-    chosen, limbs = settings or HingePlacesSettings(), hinged_limbs(V, F, area, tree, settings)
+    chosen, limbs = settings or HingePlacesSettings(), hinged_limbs(V, F, area, tree, settings, joints)
     shape = (len(surfaces), len(limbs), 2, len(chosen.places))
     square = [[_left(limb, tree, f, target, chosen.least_points) for limb in limbs] for f, target in surfaces.items()]
     return HingeCosts(

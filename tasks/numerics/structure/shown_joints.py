@@ -10,7 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.close_joints import are_as_good, close_joints
+from kinetree.tasks.numerics.structure.close_joints import amid_two, are_as_good, are_crowded, close_joints, roomy_rings
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import Fits, closer_rings, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
@@ -30,6 +30,7 @@ from kinetree.tasks.numerics.structure.surface_evidence import (
     of_mirrored_limbs,
     rooted,
 )
+from kinetree.tasks.numerics.structure.trunk_bends import with_joints_at_bends
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 
@@ -66,6 +67,10 @@ def with_end_joints(
     if not are_replaced(tree, left, extended):
         left, extended = tree, _with_shown_joints(body, tree, known, pairs, evidence)
     tree = left
+    trunk = joints_between_pairs(rooted(tree), pairs)
+    if len(trunk) > 1 and amid_two(extended, pairs):
+        tree = with_joints_at_bends(body, tree, trunk.tolist(), evidence)
+        extended = _with_shown_joints(body, tree, known, pairs, evidence)
     single = joints_between_pairs(rooted(tree), pairs)
     if len(single) != 1 or len(joints_between_pairs(rooted(extended), pairs)) != 1:
         return _without_close_joints(body, tree, extended, pairs, evidence)
@@ -85,6 +90,8 @@ def _without_close_joints(
         without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
         if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
             return _without_close_joints(body, one, without, pairs, evidence)
+    if are_crowded(extended, pairs):
+        return _with_shown_joints(body, tree, KnownFits({}), pairs, evidence, roomy=True)
     return extended
 
 
@@ -130,18 +137,27 @@ def _with_ends_of_trunk_as_aligned(body: MovingSurface, tree: FirstTree, trunk: 
 
 
 def _with_shown_joints(
-    body: MovingSurface, tree: FirstTree, known: KnownFits, pairs: LimbPairs, evidence: SurfaceEvidence
+    body: MovingSurface,
+    tree: FirstTree,
+    known: KnownFits,
+    pairs: LimbPairs,
+    evidence: SurfaceEvidence,
+    *,
+    roomy: bool = False,
 ) -> FirstTree:
     """The tree with the joints that the frames' surfaces show beside its own.
 
     The trunk is asked once more with rings that lie closer together: between those of `end_rings` a joint may be missed, and a
     part that one joint divides may hold two.
+
+    roomy : whether rings between two joints of the trunk must lie far from both (`roomy_rings`)
     """
     chosen = _settings(tree, pairs)
     rings, frames = all_end_rings(body.V, body.F, body.area, tree, pairs), evidence.frames(body, tree)
+    rings = roomy_rings(tree, rings, pairs) if roomy else rings
     fits = known.laid(frames, judged_runs(len(body.x), body.takes, chosen), rings)
     found = end_joints(frames, rings, fits, body.takes, chosen)
-    return _with_closer_joints(body, tree, found, np.arange(len(body.V)), pairs, evidence)
+    return _with_closer_joints(body, tree, found, np.arange(len(body.V)), pairs, evidence, roomy=roomy)
 
 
 def _with_closer_joints(
@@ -153,12 +169,14 @@ def _with_closer_joints(
     evidence: SurfaceEvidence,
     *,
     stays: bool = False,
+    roomy: bool = False,
 ) -> FirstTree:
     """The tree with some joints, and with those that rings closer together show across the trunk then; the pieces of what is
     divided, and the parts beside them, are asked until they show no other joint.
 
     own   : (own,) vertices whose parts are asked first, with those beside them
     stays : whether these are asked always, and nothing else
+    roomy : see `_with_shown_joints`
     """
     runs = judged_runs(len(body.x), body.takes, EndJointsSettings())
     while True:
@@ -172,6 +190,7 @@ def _with_closer_joints(
         asked = parts.tolist() if stays else _with_neighbours(tree, parts)
         limbs = pairs if found and not stays else NO_PAIRS
         rings = closer_rings(body.V, body.F, body.area, tree, mirrored, asked, limbs)
+        rings = roomy_rings(tree, rings, pairs) if roomy else rings
         found = end_joints(frames, rings, laid_in_runs(frames, runs, rings), body.takes, closer)
         if not found:
             return tree

@@ -1,0 +1,70 @@
+"""Joints of the trunk where the frames' surfaces bend it, with the borders of their parts (ours).
+
+An alignment spreads the turn of a joint over the trunk, so that a cut's border may lie beside it, by a third of a radius or
+more. The part beyond then holds flesh of the one before, and a ring across it shows a joint where none is. So before such a
+ring counts, the joints that the cut has go to where the surfaces bend (`hinge_places`), and vertices on the way change sides.
+"""
+
+from collections.abc import Collection
+
+import numpy as np
+
+from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.first_tree import FirstTree
+from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
+from kinetree.tasks.numerics.structure.hinge_places import HingePlacesSettings, hinge_shifts
+from kinetree.tasks.numerics.structure.laid_parts import laid_frames
+from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
+from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
+from kinetree.tasks.numerics.structure.score_spans import score_spans
+from kinetree.tasks.numerics.structure.skinning import skinning
+from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
+
+OF_TRUNK = HingePlacesSettings(length=0.3, straight=0.4, gain=-np.inf, short_straight=0.4, short_gain=-np.inf)
+"""What is asked of places: halves of the frames and both shapes of the border must agree on them. A gain is not asked for,
+since a place between two of those that are tried leaves no less than these."""
+
+
+def with_joints_at_bends(body: MovingSurface, tree: FirstTree, joints: Collection[int], evidence: SurfaceEvidence) -> FirstTree:
+    """The tree with some of its joints, and the borders there, where the surfaces bend; the same tree where all are there.
+
+    tree   : without joints that surfaces alone show
+    joints : by the parts that turn about them, not the root
+    """
+    frames = laid_frames(len(body.x))
+    if not len(frames):
+        return tree
+    surfaces = {f: evidence.surface(f) for f in frames.tolist()}
+    costs = hinge_costs(body.V, body.F, body.area, tree, surfaces, OF_TRUNK, joints)
+    certain = np.ones((len(frames), len(tree.parents))) if tree.certain_share is None else tree.certain_share[frames]
+    spans = [(frames >= first) & (frames < behind) for first, behind in score_spans(len(body.x), body.takes)]
+    shifts = hinge_shifts(tree, costs, tree.rest, certain, spans, OF_TRUNK)
+    moved = np.flatnonzero(shifts.any(axis=1))
+    if not len(moved):
+        return tree
+    label = tree.label
+    for joint in moved.tolist():
+        label = _with_border_moved(body.V, label, tree, joint, shifts[joint])
+    parts = MovingParts(label, tree.R, tree.t, tree.unexplained, tree.certain_share)
+    changed = sorted({*moved.tolist(), *tree.parents[moved].tolist()})
+    fitted = moving_by_themselves(body, parts, changed, evidence.confidence)
+    of = (label, fitted.R, fitted.t, tree.parents, evidence.confidence, evidence.noise)
+    new = tree._replace(
+        label=label,
+        rest=tree.rest + shifts,
+        R=fitted.R,
+        t=fitted.t,
+        unexplained=fitted.residual,
+        W=skinning(body.V, body.F, body.x, *of),
+    )
+    beside = np.isin(np.arange(len(tree.parents)), changed) | np.isin(tree.parents, changed)
+    return new._replace(drift=np.where(beside, new.drift_at(new.rest), tree.drift))
+
+
+def _with_border_moved(V: Floats, label: Ints, tree: FirstTree, joint: int, shift: Floats) -> Ints:
+    """(vertex,) part; of the two that meet in a joint, those that the border passes change sides."""
+    above, way = int(tree.parents[joint]), float(np.linalg.norm(shift))
+    outwards = (V - tree.rest[joint]) @ shift / way
+    far = V[tree.label == joint].mean(axis=0) - V[tree.label == above].mean(axis=0)
+    loses, wins = (joint, above) if far @ shift > 0.0 else (above, joint)
+    return np.where((label == loses) & (outwards < way), wins, label)
