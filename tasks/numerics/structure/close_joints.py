@@ -57,22 +57,11 @@ def amid_two(extended: FirstTree, pairs: LimbPairs) -> list[int]:
     return [k for k in extended.shown if k in trunk and min(meet[k], meet[extended.parents[k]]) > 1]
 
 
-def are_crowded(extended: FirstTree, pairs: LimbPairs) -> bool:
-    """Whether one of `amid_two` lies closer than `CLOSE` to one of the two.
+def roomy_rings(tree: FirstTree, rings: Sequence[EndRing], pairs: LimbPairs) -> list[EndRing]:
+    """The rings without those that lie closer than `CLOSE` to a joint of their part, if this lies between two of the trunk.
 
     Where a short spine bends at both ends, all flesh between them bends, so that surfaces show a joint more amid them.
     """
-    trunk = joints_between_pairs(rooted(extended), pairs)
-    for k in amid_two(extended, pairs):
-        beside = [j for j in trunk if j != k and {j, int(extended.parents[j])} & {k, int(extended.parents[k])}]
-        nearest = min(float(np.linalg.norm(extended.rest[j] - extended.rest[k])) for j in beside)
-        if nearest < CLOSE * extended.radius[k]:
-            return True
-    return False
-
-
-def roomy_rings(tree: FirstTree, rings: Sequence[EndRing], pairs: LimbPairs) -> list[EndRing]:
-    """The rings that lie farther from the joints of their part, if this lies between two joints of the trunk."""
     is_between = _meeting(tree, joints_between_pairs(rooted(tree), pairs)) > 1
     return [ring for ring in rings if not is_between[ring.cut.part] or ring.cut.apart >= CLOSE]
 

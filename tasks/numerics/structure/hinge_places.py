@@ -138,6 +138,21 @@ def hinge_offsets(
     return offsets
 
 
+def hinge_spreads(
+    tree: FirstTree, costs: HingeCosts, rest: Floats, certain: Floats, settings: HingePlacesSettings | None = None
+) -> Floats:
+    """(part,) largest distance between two of the places where halves of the frames, by each border shape, bend a joint's limb,
+    mesh unit; infinite where one of them lies at an end of the places, NaN where none were tried.
+
+    Arguments are as in `hinge_shifts`.
+    """
+    spreads = np.full(len(rest), np.nan)
+    for limb in _limbs(tree, costs, rest, certain, settings or HingePlacesSettings()):
+        sums = np.concatenate([limb.square[half].sum(axis=0) for half in _halves(len(certain))])
+        spreads[limb.joint] = np.ptp(np.nan_to_num([_least(limb.along, cost) for cost in sums], nan=np.inf))
+    return spreads
+
+
 class _Limb(NamedTuple):
     """A joint within a limb: (xyz,) its axis, `along` (place,) of the hinge from the joint, mesh unit.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.close_joints import amid_two, are_as_good, are_crowded, close_joints, roomy_rings
+from kinetree.tasks.numerics.structure.close_joints import amid_two, are_as_good, close_joints, roomy_rings
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import Fits, closer_rings, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
@@ -69,8 +69,9 @@ def with_end_joints(
     tree = left
     trunk = joints_between_pairs(rooted(tree), pairs)
     if len(trunk) > 1 and amid_two(extended, pairs):
-        tree = with_joints_at_bends(body, tree, trunk.tolist(), evidence)
-        extended = _with_shown_joints(body, tree, known, pairs, evidence)
+        settled = with_joints_at_bends(body, tree, trunk.tolist(), evidence)
+        if settled is not None:
+            tree, extended = settled, _with_shown_joints(body, settled, known, pairs, evidence, roomy=True)
     single = joints_between_pairs(rooted(tree), pairs)
     if len(single) != 1 or len(joints_between_pairs(rooted(extended), pairs)) != 1:
         return _without_close_joints(body, tree, extended, pairs, evidence)
@@ -90,8 +91,6 @@ def _without_close_joints(
         without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
         if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
             return _without_close_joints(body, one, without, pairs, evidence)
-    if are_crowded(extended, pairs):
-        return _with_shown_joints(body, tree, KnownFits({}), pairs, evidence, roomy=True)
     return extended
 
 
