@@ -70,3 +70,28 @@ def two_pairs(body: MovingSurface) -> LimbPairs:
     """The ends of these limbs; how far the rest is from them is not known."""
     tips = [[int(np.argmin(np.linalg.norm(body.V - [x, 0.0, z], axis=1))) for x in (1.0, -1.0)] for z in (-4.8, 4.8)]
     return LimbPairs(np.array(tips), np.full((2, 2, len(body.V)), np.inf))
+
+
+def trunk_with_two_joints(
+    turn: Floats, hidden: tuple[float, ...], found: tuple[float, float]
+) -> tuple[MovingSurface, FirstTree]:
+    """The tube as aligned, where a cut has two joints of the trunk: parts 0, 1 and 2 from below, the lowest is the root.
+
+    Limbs 3 and 4 hang side by side on the lowest; 5 and 6, and a head between them, 7, on the highest, beyond `END`.
+    found : heights of these joints
+    """
+    body = chain((*hidden, END), turn, along=60)
+    x, y, z = body.V.T
+    on_lower, on_upper = np.where(x < 0.0, 4, 3), np.where(y > 0.5, 7, np.where(x < 0.0, 6, 5))
+    label = np.where(z > END, on_upper, np.where(z < LIMBS, on_lower, np.searchsorted(found, z)))
+    moved = [[rigid_motion(body.V[label == p], x[label == p], np.ones((label == p).sum())) for p in range(8)] for x in body.x]
+    R, t = (np.array([[one[k] for one in frame] for frame in moved]) for k in (0, 1))
+    places = [(0.0, LIMBS), *((0.0, z) for z in found), (0.5, LIMBS), (-0.5, LIMBS), (0.5, END), (-0.5, END), (0.0, END)]
+    none, frames = np.zeros(0), len(turn)
+    tree = FirstTree(
+        parents=np.array([-1, 0, 1, 0, 0, 2, 2, 2]), place=np.arange(8), shown=(), label=label, W=np.eye(8)[label], R=R, t=t,
+        certain_share=np.ones((frames, 8)), rest=np.array([[x, 0.0, height] for x, height in places]), drift=np.zeros(8),
+        unexplained=np.full((frames, 8), 0.01), radius=np.array([0.0, 1.0, 1.0, *5 * [0.5]]), end_x=np.zeros((frames, 0, 3)),
+        graph=PartGraph(label, np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ()),
+    )  # fmt: skip
+    return moving(body), tree

@@ -53,11 +53,10 @@ def _is_amid_limbs(tree: FirstTree, part: int, pairs: LimbPairs) -> bool:
     """Whether a part's joint lies amid those of both limbs of a pair, which hang on the part."""
     below = np.flatnonzero(tree.parents == part)
     ends = beyond(tree.parents)[:, tree.label[pairs.tip]] > 0  # (part, pair, 2)
-    for end in ends[below].transpose(1, 2, 0):
-        limbs = below[end.argmax(axis=1)]
-        if end.any(axis=1).all() and limbs[0] != limbs[1]:
-            middle = tree.rest[limbs].mean(axis=0)
-            if _distance(tree, part, middle, np.inf) < AMID:
+    for one, other in ends[below].transpose(1, 2, 0):
+        limbs = [*below[one], *below[other]]
+        if len(limbs) == 2 and limbs[0] != limbs[1]:
+            if _distance(tree, part, tree.rest[limbs].mean(axis=0), np.inf) < AMID:
                 return True
     return False
 

@@ -17,6 +17,7 @@ from kinetree.tasks.numerics.structure.hinge_places import (
     HingePlacesSettings,
     hinge_offsets,
     hinge_shifts,
+    hinge_spreads,
     limb_axis,
 )
 
@@ -242,6 +243,18 @@ def test_the_offset_is_how_far_the_joint_lies_from_where_halves_bend_the_limb() 
     square = np.where(np.arange(FRAMES)[:, None, None, None] % 2, at.square, least_at(costs, -0.5, 0.5).square)
     apart = hinge_offsets(tree, costs._replace(square=square), tree.rest, ALL)[2]
     assert 0.3 * tree.radius[2] < apart < 0.5 * tree.radius[2], "second frames disagree by a radius, second quarters do not"
+
+
+def test_the_spread_is_the_largest_distance_between_places_of_halves() -> None:
+    tree, costs = costs_of(0.0)
+    step = 0.8 * tree.radius[2]
+    places = HingePlacesSettings().places
+    for far, expected in ((0.0, 0.0), (0.8, step), (9.0, np.inf)):
+        square = np.broadcast_to(1.0 + places**2, costs.square.shape).copy()
+        square[::2, :, 1] = 1.0 + (places - far) ** 2
+        spread = hinge_spreads(tree, costs._replace(square=square), tree.rest, ALL)
+        np.testing.assert_allclose(spread[2], expected, atol=1e-9)
+    assert np.isnan(spread[0]), "nothing was tried there"
 
 
 def test_a_limb_that_bends_beyond_all_places_has_the_offset_of_the_last_and_a_bent_limb_has_none() -> None:

@@ -86,7 +86,7 @@ def test_flesh_on_both_sides_is_found() -> None:
     slices = found_in((body, tree))
     assert len(slices) == 2
     for one in slices:
-        assert tree.parents[[one.part, one.below]].tolist() == [one.above, one.part]
+        assert tree.parents[[one.part, *one.below]].tolist() == [one.above, one.part]
         along = np.maximum(ALONG["left"], ALONG["right"])[tree.label == one.part]
         assert INNER <= along.min() < along.max() <= OUTER
 
@@ -168,7 +168,8 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
         ((9.0, 1.7), (5.1, 5.1), INNER, 0),
         ((2.5, 1.7), (5.3, 5.1), INNER, 0),
         ((1.1, 1.0), (5.1, 5.1), INNER, 2),
-        ((0.9, 0.9), (5.1, 5.1), INNER, 0),
+        ((0.65, 0.65), (5.1, 5.1), INNER, 0),
+        ((0.75, 0.75), (5.1, 5.1), INNER, 2),
         ((1.1, 1.0), (3.5, 3.5), 0.0, 0),
         ((2.1, 1.5), (3.5, 3.5), 0.0, 2),
         ((2.1, 1.5), (3.7, 3.5), 0.0, 0),
@@ -272,7 +273,7 @@ def test_a_slice_opposite_to_a_bone_that_is_hardly_longer_is_one_all_the_same() 
 def test_how_far_inwards_a_vertex_lies() -> None:
     body, tree = seen()
     for one in found_in((body, tree)):
-        inner, outer = tree.rest[[one.part, one.below]]
+        inner, outer = tree.rest[[one.part, *one.below]]
         ratio = np.linalg.norm(V - outer, axis=1) / np.linalg.norm(V - inner, axis=1)
         is_before = (V - inner) @ (outer - inner) <= 0.0
         np.testing.assert_allclose(one.inwards, np.where(is_before, np.inf, ratio))
@@ -329,7 +330,7 @@ def test_joints_that_are_to_stay_are_those_of_the_neighbours_then() -> None:
     assert len(start.parts.joined) == len(tree.parents) - 1
     origin = joints.left.origin
     pairs = {frozenset(int(origin[part]) for part in pair) for pair in joints.left.parts.joined}
-    assert {frozenset((one.above, one.below)) for one in slices} <= pairs
+    assert {frozenset((one.above, *one.below)) for one in slices} <= pairs
     assert len(pairs) == len(tree.parents) - 3
 
 
@@ -374,7 +375,7 @@ def test_slices_farther_out_lie_beside_long_parts(
     slices = found_in((body, tree), limits(length=0.0))
     assert len(slices) == count
     for one in slices:
-        assert tree.parents[[one.below, one.part, one.above]].tolist() == [one.part, one.above, 0]
+        assert tree.parents[[*one.below, one.part, one.above]].tolist() == [one.part, one.above, 0]
 
 
 def test_beside_a_slice_at_the_trunk_none_lies_farther_out(monkeypatch: pytest.MonkeyPatch) -> None:
