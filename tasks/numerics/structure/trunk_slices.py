@@ -2,7 +2,7 @@
 
 An arm that greets pulls one side of the chest along, so that a cut has a joint before the chest's and one beyond. They lie as
 near to each other as two joints of a trunk never do. Flesh about two hips, in the same way, turns by a share of what both
-thighs turn by: it is a part that carries both, and whose own joint lies amid theirs.
+thighs turn by: it is a part that carries both and nothing else, and whose own joint lies amid theirs.
 """
 
 import numpy as np
@@ -20,7 +20,8 @@ with 0.49 to 0.57; of the 26 pairs of true joints within 1.35 radii three have 0
 
 AMID = 0.6
 """Distance of a part's joint from the middle between the two limbs of a pair that it carries, in radii of its border, below
-which it is flesh about them. People 14 and 758 have such flesh, with 0.27 and 0.22; chests and pelvises have 0.96 and more."""
+which it is flesh about them, if it carries nothing else. People 14, 758 and 781 have such flesh, with 0.22 to 0.27; chests
+and pelvises have 0.75 and more but for that of the ballet (every fourth frame), which carries a neck too."""
 
 
 def trunk_slices(body: MovingSurface, tree: FirstTree, leaves: Ints, pairs: LimbPairs) -> list[Slice]:
@@ -50,15 +51,12 @@ def _of_trunk(tree: FirstTree, leaves: Ints) -> Flags:
 
 
 def _is_amid_limbs(tree: FirstTree, part: int, pairs: LimbPairs) -> bool:
-    """Whether a part's joint lies amid those of both limbs of a pair, which hang on the part."""
+    """Whether both limbs of a pair, and nothing else, hang on a part whose joint lies amid theirs."""
     below = np.flatnonzero(tree.parents == part)
     ends = beyond(tree.parents)[:, tree.label[pairs.tip]] > 0  # (part, pair, 2)
-    for one, other in ends[below].transpose(1, 2, 0):
-        limbs = [*below[one], *below[other]]
-        if len(limbs) == 2 and limbs[0] != limbs[1]:
-            if _distance(tree, part, tree.rest[limbs].mean(axis=0), np.inf) < AMID:
-                return True
-    return False
+    if len(below) != 2 or not (ends[below[0]] & ends[below[1], :, ::-1]).any():
+        return False
+    return _distance(tree, part, tree.rest[below].mean(axis=0), np.inf) < AMID
 
 
 def _distance(tree: FirstTree, part: int, place: Floats, radius: float) -> float:

@@ -57,8 +57,10 @@ def test_a_slice_is_shared_out_between_its_neighbours_though_other_cuts_have_it(
 
 
 def about_limbs(below: float) -> tuple[MovingSurface, FirstTree]:
-    """A trunk whose highest part, on which three limbs hang, begins so far below them; its border has a radius of 1."""
-    return trunk_with_two_joints(swings(24, 4, 20.0, axes=1, seed=1), (-1.2, END - below), (-1.2, END - below))
+    """A trunk whose highest part, on which two limbs hang, begins so far below them; its border has a radius of 1."""
+    turn = swings(24, 4, 20.0, axes=1, seed=1)
+    trunk, tree = trunk_with_two_joints(turn, (-1.2, END - below), (-1.2, END - below))
+    return trunk, tree._replace(parents=np.where(np.arange(8) == 7, 5, tree.parents))
 
 
 @pytest.mark.parametrize(("below", "count"), [(0.5, 1), (0.7, 0)])
@@ -66,8 +68,10 @@ def test_a_part_whose_joint_lies_amid_two_limbs_that_it_carries_is_a_slice(below
     trunk, tree = about_limbs(below)
     pairs = two_pairs(trunk)
     found = trunk_slices(trunk, tree, pairs.tip.ravel(), pairs)
-    assert [(one.part, one.above, one.below) for one in found] == [(2, 1, (5, 6, 7))] * count
+    assert [(one.part, one.above, one.below) for one in found] == [(2, 1, (5, 6))] * count
     assert trunk_slices(trunk, tree, pairs.tip.ravel(), NO_PAIRS) == [], "its limbs are no mirror images"
+    with_head = tree._replace(parents=np.where(np.arange(8) == 7, 2, tree.parents))
+    assert trunk_slices(trunk, with_head, pairs.tip.ravel(), pairs) == [], "a head hangs on it"
 
 
 def test_its_flesh_goes_to_the_trunk_on_which_the_limbs_hang_then(monkeypatch: pytest.MonkeyPatch) -> None:
