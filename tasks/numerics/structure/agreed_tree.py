@@ -92,7 +92,8 @@ def agreed_tree(
     others = [other.motion.carried(other.rest[1:]) for k, other in enumerate(trees) if k != which]
     tree = _without_lone_joints(body, tree, leaves, pairs, confidence, others, settings)
     if confidence is not None:
-        tree = _without_slices(body, tree, trunk_slices(body, tree, leaves, pairs), confidence, settings)
+        while across := trunk_slices(body, tree, leaves, pairs):
+            tree = _without_slices(body, tree, across, confidence, settings)
         slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
         tree = _without_slices(body, tree, slices, confidence, settings)
         tree = _without_flesh(body, tree, leaves, pairs, confidence, settings)
