@@ -97,16 +97,20 @@ def _across_parts(
     shown: Sequence[Sequence[RingEvidence]],
     chosen: EvidentRingsSettings,
 ) -> Scores:
-    """Of each part's rings with enough score the likeliest one, if it turns enough; rings across limbs of a pair left out."""
+    """Of each part's rings the likeliest one, if it shows and turns enough; rings across limbs of a pair left out.
+
+    At an end it is the likeliest of all: where a ring shows most that is too close to the joint before it, those beyond show a
+    part of the same. Across the trunk it is that of those with enough score.
+    """
     evident: Scores = {}
     for part in sorted({ring.cut.part for ring in rings}):
         own = [k for k, ring in enumerate(rings) if ring.cut.part == part and not ring.cut.is_across_limb]
         if own:
             least = {k: needed_score(rings[k], chosen) for k in own}
             best = max(shown, key=lambda row: max(row[k].score / least[k] for k in own))
-            enough = [(_rank(rings[k], best[k]), k) for k in own if best[k].score >= least[k]]
-            k = max(enough)[1] if enough else own[0]
-            if enough and _is_joint(rings[k], best[k], chosen):
+            asked = [k for k in own if not rings[k].cut.hung or best[k].score >= least[k]] or own
+            k = max(asked, key=lambda k: (_rank(rings[k], best[k]), k))
+            if best[k].score >= least[k] and _is_joint(rings[k], best[k], chosen):
                 evident[k] = best[k].score
     return evident
 
