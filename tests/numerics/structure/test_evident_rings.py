@@ -71,6 +71,15 @@ def test_of_the_rings_across_a_part_of_the_trunk_the_best_and_of_an_end_the_one_
     assert evident_rings(TREE, rings, [evidence]) == {1: 0.3, 2: 0.2}
 
 
+@pytest.mark.parametrize(("gain", "joints"), [(1.2, []), (1.05, [1])])
+def test_where_a_ring_close_to_the_joint_before_shows_most_those_beyond_are_none(gain: float, joints: list[int]) -> None:
+    chosen, close = EvidentRingsSettings(), ring(1, 4.0)
+    close.piece.joint = close.cut.centre - [0.0, 0.0, 1.0]
+    between = 0.5 * (chosen.least_score + chosen.least_score_if_short)
+    evidence = [shows(between, gain), shows(between, 1.1)]
+    assert list(evident_rings(TREE, [close, ring(1, 7.0)], [evidence])) == joints
+
+
 def test_a_part_is_judged_in_the_take_that_shows_most() -> None:
     little, much = [shows(0.1)], [shows(0.3)]
     assert evident_rings(TREE, [ring(0, -2.0, (2,))], [little, much, little]) == {0: 0.3}
