@@ -25,7 +25,8 @@ class LimbsInTrunkSettings(NamedTuple):
 
     inner: float = 0.7
     """Distance of the limb's own innermost joint from its end in that of the mirror image's, at most. Those nine have 0.56 to
-    0.66; where the other limb has a joint too many, or lies on flesh beside the trunk, it is 0.77 and more."""
+    0.66; where the other limb has a joint too many, or lies on flesh beside the trunk, it is 0.77 and more. Of two joints that
+    it lacks the outer one must lie farther inwards, in that of the inner one: person 815 has 0.93."""
     share: float = 0.3
     """Share of the part's surface that is of the limb, at least. Those have 0.51 to 0.90, others 0.07 to 0.50. Not varied."""
     least_vertices: int = 8
@@ -66,23 +67,27 @@ def limbs_in_trunk(
     limbs = mirrored_limbs(F, RootedParts.of(parts.label, found), pairs, paired)
     for away, (one, other, row) in zip(pairs.distance, limbs, strict=False):
         for side, (own, mirror) in enumerate(((one, other), (other, one))):
-            if _lacks_its_innermost(own, mirror, row[:, [side, 1 - side]], chosen):
+            level = _level_of_lacking(own, mirror, row[:, [side, 1 - side]], chosen)
+            if level is not None:
                 part, below = (int(tree.order[k]) for k in (tree.parents[own.part[-1]], own.part[-1]))
                 inside = parts.label == part
-                limb = inside & (away[side] < mirror.level[-1]) & (away[side] < away[1 - side])
+                limb = inside & (away[side] < level) & (away[side] < away[1 - side])
                 if _has_both(inside, limb, area, chosen):
                     yield LimbInTrunk(part, below, np.flatnonzero(limb))
 
 
-def _lacks_its_innermost(own: Limb, mirror: Limb, partners: Ints, chosen: LimbsInTrunkSettings) -> bool:
-    """Whether the mirror image of a limb has one joint more, farther inwards than any of its own.
+def _level_of_lacking(own: Limb, mirror: Limb, partners: Ints, chosen: LimbsInTrunkSettings) -> float | None:
+    """Distance from the end of the limb of the joint that its mirror image has farther inwards than any of its own; None where
+    there is none. If there are two close to each other, on either side of flesh about a hip, the outer one counts.
 
     partners : (partners, 2) rows of joints of the limb and of its mirror image that are mirror images
     """
-    last = len(own.part) - 1
-    if last < 0 or len(mirror.part) < 2 or [last, len(mirror.part) - 2] not in partners.tolist():
-        return False
-    return bool(np.isfinite(mirror.level[-1]) and own.level[-1] <= chosen.inner * mirror.level[-1])
+    last, of_last = len(own.part) - 1, partners[partners[:, 0] == len(own.part) - 1, 1]
+    if last < 0 or len(of_last) != 1 or of_last[0] + 1 >= len(mirror.part):
+        return None
+    level, innermost = float(mirror.level[of_last[0] + 1]), float(mirror.level[-1])
+    is_one = np.isfinite(innermost) and own.level[-1] <= chosen.inner * level and level > chosen.inner * innermost
+    return level if is_one else None
 
 
 def _has_both(inside: Flags, limb: Flags, area: Floats, chosen: LimbsInTrunkSettings) -> bool:

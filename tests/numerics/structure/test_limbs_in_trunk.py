@@ -7,9 +7,15 @@ from shipped import TREE
 
 from kinetree.tasks.numerics.structure import agreed_tree, limbs_apart
 from kinetree.tasks.numerics.structure.first_tree import in_tree_order
+from kinetree.tasks.numerics.structure.joint_partners import Limb
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.limbs_apart import with_limbs_apart
-from kinetree.tasks.numerics.structure.limbs_in_trunk import LimbInTrunk, LimbsInTrunkSettings, limbs_in_trunk
+from kinetree.tasks.numerics.structure.limbs_in_trunk import (
+    LimbInTrunk,
+    LimbsInTrunkSettings,
+    _level_of_lacking,
+    limbs_in_trunk,
+)
 from kinetree.tasks.numerics.structure.part_tree import joints_of, part_tree
 from kinetree.tasks.numerics.structure.pruning import ALONE, NO_PART, Pruned, pruned_without
 from kinetree.tasks.numerics.structure.tree_joints import Cut, tree_joints
@@ -64,6 +70,19 @@ def test_limb_that_lacks_two_joints_is_left_alone() -> None:
     feet = {"left foot": 5, "right foot": 6}
     assert found(Legs.of({**PARTS, **feet, "left shank": 0})) == []
     assert len(found(Legs.of({**PARTS, **feet}))) == 1
+
+
+@pytest.mark.parametrize(
+    ("levels", "level"), [((40, 90, 100), 90), ((40, 65, 100), None), ((70, 90, 100), None), ((40,), None)]
+)
+def test_of_two_joints_that_it_lacks_close_to_each_other_the_outer_one_counts(
+    levels: tuple[float, ...], level: float | None
+) -> None:
+    """Of its mirror image, from the end; its own last joint is the partner of the first of them."""
+    own = Limb(np.array([4]), np.array([float(levels[0])]))
+    mirror = Limb(np.arange(len(levels)), np.array(levels, float))
+    assert _level_of_lacking(own, mirror, np.array([[0, 0]]), LimbsInTrunkSettings()) == level
+    assert _level_of_lacking(own, mirror, np.zeros((0, 2), np.int64), LimbsInTrunkSettings()) is None
 
 
 @pytest.mark.parametrize(("inner", "count"), [(0.55, 0), (0.6, 1)])
