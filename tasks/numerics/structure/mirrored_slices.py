@@ -17,7 +17,6 @@ from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.limbs_apart import FIT_FLOOR
 from kinetree.tasks.numerics.structure.part_motion import fit, residuals
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.unpaired_parts import UnpairedPartsSettings
 
 
 class SliceLimits(NamedTuple):
@@ -71,12 +70,16 @@ class MirroredSlicesSettings(NamedTuple):
     foot (`end_joints`). All others are 3.6 and more long."""
     mixture_within: float = 3.0
     """Mixture of a part farther out, at most."""
-    least_alone: float = UnpairedPartsSettings().near
+    least_alone: float = 1.5
     """Length of a slice on one side alone, at least: shorter ones `unpaired_parts` has judged already, and kept a true link
-    from the pelvis to one hip of the dance (every fourth frame), which has 1.43. Two slices were seen, with 2.6 and 2.7."""
+    from the pelvis to one hip of the dance (every fourth frame), which has 1.43. Three slices were seen, with 1.57, 2.6 and
+    2.7."""
     longer: float = 1.6
-    """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Two were seen,
-    with 2.4 and 2.6."""
+    """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Three were seen,
+    with 2.4 to 4.2."""
+    nearest: float = 0.55
+    """Length of an innermost part below which its two joints are one, if it is a mixture too (`mixture_within`). Flesh above
+    one hip of person 836, who runs, has 0.47; links from a pelvis to a hip of recorded bodies 0.66 and more."""
     shares: tuple[float, ...] = (0.3, 0.5, 0.7, 1.0, 1.4)
     """Distances from its outer joint, in that from its inner joint, below which a vertex goes to the limb, else to the trunk;
     of these the first with which the limb's joint drifts hardly more than with any. Chosen with `looser` on shoulders of the
@@ -129,7 +132,7 @@ def mirrored_slices(
                 found |= {each.part: each for each in slices}
                 break
     for limb in (limb for limbs in of_pairs for limb in limbs[:2]):
-        for each in _within(body, tree, limb, confidence, chosen):
+        for each in (*_nearest(body, tree, limb, confidence, chosen), *_within(body, tree, limb, confidence, chosen)):
             if not found.keys() & {each.above, *each.below}:
                 found[each.part] = each
     return [found[part] for part in sorted(found)]
@@ -161,6 +164,16 @@ def _left_by_one(body: MovingSurface, tree: FirstTree, limbs: MirroredLimbs, con
         left.append(float(np.sqrt(square @ np.bincount(label, area) / area.sum())))
     one, two = np.maximum(left, 1e-6 * body.size)
     return float(one / two)
+
+
+def _nearest(
+    body: MovingSurface, tree: FirstTree, limb: Limb, confidence: Floats, chosen: MirroredSlicesSettings
+) -> Iterator[Slice]:
+    """The innermost part of a limb, if its joints are one."""
+    if _length(tree, limb) < chosen.nearest:
+        one = slice_between(body, tree, *limb.part[-2:].tolist())
+        if _mixture(body, tree, one, confidence) <= chosen.mixture_within:
+            yield one
 
 
 def _within(

@@ -112,7 +112,7 @@ def test_bones_that_turn_by_themselves_are_none() -> None:
 def test_flesh_on_one_side_is_one_if_the_other_has_one_long_bone_there(side: str) -> None:
     other = {"left": "right", "right": "left"}[side]
     body, tree = seen(flesh_of=(side,), limb_of=(other,))
-    assert found_in((body, tree)) == []
+    assert found_in((body, tree), MirroredSlicesSettings(least_alone=1.8)) == []
     (one,) = found_in((body, tree), ALONE)
     along = ALONG[side][tree.label == one.part]
     assert INNER <= along.min() < along.max() <= OUTER
@@ -163,9 +163,14 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
         ((4.0, 3.95), (5.1, 5.1), INNER, 0),
         ((3.8, 2.0), (5.3, 5.1), INNER, 1),
         ((3.8, 2.0), (5.1, 5.3), INNER, 0),
-        ((3.8, 1.5), (5.1, 5.1), INNER, 0),
+        ((3.8, 1.45), (5.1, 5.1), INNER, 0),
         ((9.0, 1.9), (5.1, 5.1), INNER, 1),
-        ((9.0, 1.7), (5.1, 5.1), INNER, 0),
+        ((9.0, 1.55), (5.1, 5.1), INNER, 1),
+        ((9.0, 1.45), (5.1, 5.1), INNER, 0),
+        ((9.0, 0.6), (2.9, 2.9), INNER, 0),
+        ((9.0, 0.5), (2.9, 2.9), INNER, 1),
+        ((9.0, 0.5), (3.1, 3.1), INNER, 0),
+        ((9.0, 0.5), (2.9, 2.9), 0.0, 1),
         ((2.5, 1.7), (5.3, 5.1), INNER, 0),
         ((1.1, 1.0), (5.1, 5.1), INNER, 2),
         ((0.65, 0.65), (5.1, 5.1), INNER, 0),
