@@ -95,3 +95,14 @@ def trunk_with_two_joints(
         graph=PartGraph(label, np.zeros((0, 2), np.int64), np.zeros((0, 3)), none, none, ()),
     )  # fmt: skip
     return moving(body), tree
+
+
+def with_joint_amid(two: FirstTree, shown: tuple[int, ...]) -> FirstTree:
+    """Such a tree with one joint more of the trunk, amid its two: 1, 2 and 3 are the trunk's now, from below."""
+    return two._replace(
+        parents=np.array([-1, 0, 1, 2, 0, 0, 3, 3, 3]),
+        rest=np.insert(two.rest, 2, two.rest[[1, 2]].mean(axis=0), axis=0),
+        label=np.where(two.label > 1, two.label + 1, two.label),
+        radius=np.insert(two.radius, 2, 1.0),
+        shown=shown,
+    )

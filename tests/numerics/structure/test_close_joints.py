@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from articulated import swings
 from smeared import END, Frames, turning
-from trunk import trunk_with_joint_midway, trunk_with_two_joints, two_pairs
+from trunk import trunk_with_joint_midway, trunk_with_two_joints, two_pairs, with_joint_amid
 from whole_tree import fits_of_rings
 
 from kinetree.tasks.numerics.structure import close_joints as numerics
@@ -132,10 +132,7 @@ def test_the_closest_is_asked_for_first(bent_twice: Bent, extended: FirstTree) -
 def test_which_joints_lie_amid_two_of_the_trunk(shown: tuple[int, ...], amid: bool) -> None:
     """The trunk's joints are 1, 2 and 3, from below."""
     body, two = trunk_with_two_joints(swings(24, 4, 20.0, axes=1, seed=1), (-1.0, 1.0), (-1.0, 1.0))
-    parents = np.array([-1, 0, 1, 2, 0, 0, 3, 3, 3])
-    rest = np.insert(two.rest, 2, [0.0, 0.0, 0.0], axis=0)
-    label = np.where(two.label > 1, two.label + 1, two.label)
-    tree = two._replace(parents=parents, rest=rest, label=label, radius=np.insert(two.radius, 2, 1.0), shown=shown)
+    tree = with_joint_amid(two, shown)
     assert amid_two(tree, two_pairs(body)) == ([2] if amid else [])
     assert amid_two(two._replace(shown=(1, 2)), two_pairs(body)) == [], "only one on either side"
 

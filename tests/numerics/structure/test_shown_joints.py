@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from articulated import Known, swings
 from smeared import END, Frames, turning
-from trunk import LIMBS, trunk, trunk_with_joint_midway, two_pairs
+from trunk import LIMBS, trunk, trunk_with_joint_midway, trunk_with_two_joints, two_pairs, with_joint_amid
 from whole_tree import fits_of_rings
 
 from kinetree.tasks.numerics.structure import shown_joints as numerics
@@ -103,6 +103,46 @@ def test_what_a_trunk_must_show_is_asked_anew_once_it_is_divided(monkeypatch: py
         )
         assert len(of_bent_trunk((-1.6, 1.1))[1].shown) == count
         assert {*asked} == {*range(4, 5 + count)}
+
+
+@pytest.mark.parametrize(
+    ("shown", "settles", "joints"), [((2,), True, [1, 2]), ((2,), False, [1, 2]), ((3,), True, []), ((), True, [])]
+)
+def test_where_a_joint_is_shown_amid_two_these_go_to_their_bends_and_it_must_lie_far_from_both(
+    shown: tuple[int, ...], settles: bool, joints: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    body, two = trunk_with_two_joints(bending((-1.0, 1.0)), (-1.0, 1.0), (-1.0, 1.0))
+    extended, settled, after = (
+        with_joint_amid(two, shown),
+        two._replace(rest=1.1 * two.rest),
+        two._replace(drift=two.drift + 1.0),
+    )
+    asked: list[Any] = []
+    evidence: Any = None
+
+    def at_bends(_body: Any, _tree: Any, joints: list[int], _evidence: Any) -> FirstTree | None:
+        asked.extend(joints)
+        return settled if settles else None
+
+    def with_shown(_body: Any, tree: FirstTree, *of: Any, roomy: bool) -> FirstTree:
+        assert tree is settled
+        assert roomy
+        return after
+
+    monkeypatch.setattr(numerics, "with_joints_at_bends", at_bends)
+    monkeypatch.setattr(numerics, "_with_shown_joints", with_shown)
+    found = numerics._with_settled_trunk(body, two, extended, numerics.KnownFits({}), two_pairs(body), evidence)
+    assert found is (after if joints and settles else extended)
+    assert asked == joints
+
+
+def test_a_trunk_with_one_joint_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It may lie midway between two, and would go to one of them."""
+    body, two = trunk_with_two_joints(bending((-1.0, 1.0)), (-1.0, 1.0), (-1.0, 1.0))
+    _, one = trunk_with_joint_midway(bending((-1.0, 1.0)), (-1.0, 1.0))
+    extended, evidence = with_joint_amid(two, (2,)), None
+    monkeypatch.setattr(numerics, "with_joints_at_bends", lambda *of: pytest.fail("it is asked"))
+    assert numerics._with_settled_trunk(body, one, extended, numerics.KnownFits({}), two_pairs(body), evidence) is extended
 
 
 def bending(hidden: tuple[float, ...]) -> np.ndarray:
