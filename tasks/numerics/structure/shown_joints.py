@@ -51,8 +51,8 @@ def with_end_joints(
 
     Where the trunk has a single joint between pairs of limbs, and the surfaces show no other beside it, it may lie midway
     between two. So they are asked again without it; if they show two or more, these take its place, and the limbs are asked
-    anew. Elsewhere a joint of the trunk close to one that surfaces show goes if these do as well without it (`close_joints`),
-    and one that they show amid two must show beside these as they bend (`trunk_bends`).
+    anew. Elsewhere one that they show amid two must show beside these where they bend (`trunk_bends`), and a joint of the trunk
+    close to one that surfaces show goes if these do as well without it (`close_joints`).
 
     leaves     : (leaf,) vertices at the ends of limbs
     fits       : by ring of `end_rings`, how its part lies in the frames of `end_joints.judged_runs`
@@ -67,11 +67,10 @@ def with_end_joints(
     extended = _with_shown_joints(body, left, known, pairs, evidence)
     if not are_replaced(tree, left, extended):
         left, extended = tree, _with_shown_joints(body, tree, known, pairs, evidence)
-    tree = left
+    tree, extended = _with_settled_trunk(body, left, extended, known, pairs, evidence)
     single = joints_between_pairs(rooted(tree), pairs)
     if len(single) != 1 or len(joints_between_pairs(rooted(extended), pairs)) != 1:
-        left, extended = _without_close_joints(body, tree, extended, pairs, evidence)
-        return _with_settled_trunk(body, left, extended, known, pairs, evidence)
+        return _without_close_joints(body, tree, extended, pairs, evidence)
     divided = _with_trunk_divided_anew(body, tree, int(single[0]), pairs, evidence)
     if divided is None:
         return extended
@@ -79,32 +78,32 @@ def with_end_joints(
     return divided if len(divided.parents) > len(extended.parents) else extended
 
 
-def _without_close_joints(
-    body: MovingSurface, tree: FirstTree, extended: FirstTree, pairs: LimbPairs, evidence: SurfaceEvidence
-) -> tuple[FirstTree, FirstTree]:
-    """The tree and the extended one without joints of the trunk that those which surfaces show do as well without
-    (`close_joints`).
-    """
-    for joint in close_joints(tree, extended, pairs):
-        one = without_joint(body, tree, joint, evidence, SMEARED)
-        without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
-        if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
-            return _without_close_joints(body, one, without, pairs, evidence)
-    return tree, extended
-
-
 def _with_settled_trunk(
     body: MovingSurface, tree: FirstTree, extended: FirstTree, known: KnownFits, pairs: LimbPairs, evidence: SurfaceEvidence
-) -> FirstTree:
-    """The extended tree; where surfaces show a joint amid two of the trunk, these two are where surfaces bend first.
+) -> tuple[FirstTree, FirstTree]:
+    """The tree and the extended one; where surfaces show a joint amid two of the trunk, these two are where they bend, first.
 
     So flesh of a neighbour shows no joint, nor does flesh that bends between two joints (`roomy_rings`).
     """
     trunk = joints_between_pairs(rooted(tree), pairs)
     if len(trunk) < 2 or not amid_two(extended, pairs):
-        return extended
+        return tree, extended
     settled = with_joints_at_bends(body, tree, trunk.tolist(), evidence)
-    return extended if settled is None else _with_shown_joints(body, settled, known, pairs, evidence, roomy=True)
+    if settled is None:
+        return tree, extended
+    return settled, _with_shown_joints(body, settled, known, pairs, evidence, roomy=True)
+
+
+def _without_close_joints(
+    body: MovingSurface, tree: FirstTree, extended: FirstTree, pairs: LimbPairs, evidence: SurfaceEvidence
+) -> FirstTree:
+    """The extended tree without joints of the trunk that those which surfaces show do as well without (`close_joints`)."""
+    for joint in close_joints(tree, extended, pairs):
+        one = without_joint(body, tree, joint, evidence, SMEARED)
+        without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
+        if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
+            return _without_close_joints(body, one, without, pairs, evidence)
+    return extended
 
 
 def _with_trunk_divided_anew(

@@ -68,7 +68,7 @@ def bent(*heights: float) -> Bent:
 
 
 def without(of: Bent, extended: FirstTree) -> FirstTree:
-    return shown_joints._without_close_joints(of.body, of.tree, extended, two_pairs(of.body), of.evidence)[1]
+    return shown_joints._without_close_joints(of.body, of.tree, extended, two_pairs(of.body), of.evidence)
 
 
 def test_both_stay_where_the_trunk_bends_at_both(bent_twice: Bent, extended: FirstTree) -> None:

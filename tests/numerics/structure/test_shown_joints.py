@@ -132,7 +132,8 @@ def test_where_a_joint_is_shown_amid_two_these_go_to_their_bends_and_it_must_lie
     monkeypatch.setattr(numerics, "with_joints_at_bends", at_bends)
     monkeypatch.setattr(numerics, "_with_shown_joints", with_shown)
     found = numerics._with_settled_trunk(body, two, extended, numerics.KnownFits({}), two_pairs(body), evidence)
-    assert found is (after if joints and settles else extended)
+    assert found[0] is (settled if joints and settles else two)
+    assert found[1] is (after if joints and settles else extended)
     assert asked == joints
 
 
@@ -142,7 +143,9 @@ def test_a_trunk_with_one_joint_does_not_settle(monkeypatch: pytest.MonkeyPatch)
     _, one = trunk_with_joint_midway(bending((-1.0, 1.0)), (-1.0, 1.0))
     extended, evidence = with_joint_amid(two, (2,)), None
     monkeypatch.setattr(numerics, "with_joints_at_bends", lambda *of: pytest.fail("it is asked"))
-    assert numerics._with_settled_trunk(body, one, extended, numerics.KnownFits({}), two_pairs(body), evidence) is extended
+    found = numerics._with_settled_trunk(body, one, extended, numerics.KnownFits({}), two_pairs(body), evidence)
+    assert found[0] is one
+    assert found[1] is extended
 
 
 def bending(hidden: tuple[float, ...]) -> np.ndarray:
