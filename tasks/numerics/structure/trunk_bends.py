@@ -32,15 +32,20 @@ SPREAD = 0.26
 joints of the trunk are right but for their places have 0.02 to 0.24; person 606, in 24 frames of 3,000 vertices, whose lower
 one is flesh of the hips, has 0.29; two humans whose cut has one of three and one midway have 0.97 and more at one of them."""
 
+LARGER_SPREAD = 0.45
+"""The same where all joints that surfaces show are needed (`close_joints`), as that of 606 is not. Person 842, whose two are
+right, has 0.36."""
+
 
 def with_joints_at_bends(
-    body: MovingSurface, tree: FirstTree, joints: Collection[int], evidence: SurfaceEvidence
+    body: MovingSurface, tree: FirstTree, joints: Collection[int], evidence: SurfaceEvidence, most: float = SPREAD
 ) -> FirstTree | None:
     """The tree with some of its joints, and the borders there, where the surfaces bend; None where halves of the frames do not
     agree on one of these joints.
 
     tree   : without joints that surfaces alone show
     joints : by the parts that turn about them, not the root
+    most   : see `SPREAD`
     """
     frames = laid_frames(len(body.x))
     if not len(frames):
@@ -49,7 +54,7 @@ def with_joints_at_bends(
     costs = hinge_costs(body.V, body.F, body.area, tree, surfaces, OF_TRUNK, joints)
     certain = np.ones((len(frames), len(tree.parents))) if tree.certain_share is None else tree.certain_share[frames]
     spreads = hinge_spreads(tree, costs, tree.rest, certain, OF_TRUNK)[[*joints]]
-    if not (spreads < SPREAD * tree.radius[[*joints]]).all():
+    if not (spreads < most * tree.radius[[*joints]]).all():
         return None
     spans = [(frames >= first) & (frames < behind) for first, behind in score_spans(len(body.x), body.takes)]
     shifts = hinge_shifts(tree, costs, tree.rest, certain, spans, OF_TRUNK)

@@ -120,7 +120,7 @@ def test_where_a_joint_is_shown_amid_two_these_go_to_their_bends_and_it_must_lie
     asked: list[Any] = []
     evidence: Any = None
 
-    def at_bends(_body: Any, _tree: Any, joints: list[int], _evidence: Any) -> FirstTree | None:
+    def at_bends(_body: Any, _tree: Any, joints: list[int], _evidence: Any, _most: float) -> FirstTree | None:
         asked.extend(joints)
         return settled if settles else None
 
