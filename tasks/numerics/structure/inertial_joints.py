@@ -9,12 +9,11 @@ from kinetree.tasks.numerics.structure.end_joints import EndJointsSettings
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.inertia import Turns, beyond_inertia, inertial_turns
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
-from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import FLESH
+from kinetree.tasks.numerics.structure.refitted_tree import refitted_tree
 from kinetree.tasks.numerics.structure.ring_evidence import about_mean, agreeing_turn, going_on, judged_frames
 from kinetree.tasks.numerics.structure.score_spans import score_spans
-from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence, of_mirrored_limbs
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
@@ -77,10 +76,4 @@ def _as_one(body: MovingSurface, tree: FirstTree, part: int, evidence: SurfaceEv
     """The tree with the two parts of a joint as one, which moves as the vertices of both do."""
     vertex = int(np.flatnonzero(tree.label == part)[0])
     one = without_joint(body, tree, part, evidence, FLESH)
-    both = int(one.label[vertex])
-    parts = MovingParts(one.label, one.R, one.t, one.unexplained, one.certain_share)
-    moved = moving_by_themselves(body, parts, [both], evidence.confidence)
-    of = (one.label, moved.R, moved.t, one.parents, evidence.confidence, evidence.noise)
-    new = one._replace(R=moved.R, t=moved.t, unexplained=moved.residual, W=skinning(body.V, body.F, body.x, *of))
-    beside = (np.arange(len(one.parents)) == both) | (one.parents == both)
-    return new._replace(drift=np.where(beside, new.drift_at(new.rest), one.drift))
+    return refitted_tree(body, one, [int(one.label[vertex])], evidence)

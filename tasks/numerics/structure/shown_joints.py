@@ -18,10 +18,9 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.inertial_joints import without_inertial_joints
 from kinetree.tasks.numerics.structure.joint_partners import joints_between_pairs
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
-from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import MIDWAY, SMEARED
-from kinetree.tasks.numerics.structure.skinning import skinning
+from kinetree.tasks.numerics.structure.refitted_tree import refitted_tree
 from kinetree.tasks.numerics.structure.smeared_ends import are_replaced, without_smeared_ends
 from kinetree.tasks.numerics.structure.surface_evidence import (
     KnownFits,
@@ -147,15 +146,10 @@ def _with_ends_of_trunk_as_aligned(body: MovingSurface, tree: FirstTree, trunk: 
     ends = np.setdiff1d(np.flatnonzero(meets == 1), carries_shown)
     if not len(ends):
         return tree
-    parts = MovingParts(tree.label, tree.R, tree.t, tree.unexplained, tree.certain_share)
-    fitted = moving_by_themselves(body, parts, ends.tolist(), evidence.confidence)
     x, share = tree.with_ends(body).x, tree.W[:, ends].sum(axis=1)
     x = x + share[:, None] * (body.x - x)
-    W = skinning(body.V, body.F, x, tree.label, fitted.R, fitted.t, tree.parents, evidence.confidence, evidence.noise)
-    unexplained = np.maximum(fitted.residual, tree.unexplained)
-    new = tree._replace(R=fitted.R, t=fitted.t, unexplained=unexplained, W=W, end_x=x[:, tree.at_ends])
-    beside = np.isin(np.arange(len(meets)), ends) | np.isin(tree.parents, ends)
-    return new._replace(drift=np.where(beside, new.drift_at(new.rest), tree.drift))
+    new = refitted_tree(body, tree, ends.tolist(), evidence, body._replace(x=x))
+    return new._replace(unexplained=np.maximum(new.unexplained, tree.unexplained), end_x=x[:, tree.at_ends])
 
 
 def _with_shown_joints(

@@ -17,10 +17,9 @@ from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
 from kinetree.tasks.numerics.structure.hinge_places import HingePlacesSettings, hinge_shifts, hinge_spreads
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
-from kinetree.tasks.numerics.structure.limbs_apart import moving_by_themselves
-from kinetree.tasks.numerics.structure.part_tree import MovingParts, MovingSurface
+from kinetree.tasks.numerics.structure.part_tree import MovingSurface
+from kinetree.tasks.numerics.structure.refitted_tree import refitted_tree
 from kinetree.tasks.numerics.structure.score_spans import score_spans
-from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
 
 OF_TRUNK = HingePlacesSettings(length=0.3, straight=0.4, gain=-np.inf, short_straight=0.4, short_gain=-np.inf)
@@ -64,20 +63,8 @@ def with_joints_at_bends(
     label = tree.label
     for joint in moved.tolist():
         label = _with_border_moved(body.V, label, tree, joint, shifts[joint])
-    parts = MovingParts(label, tree.R, tree.t, tree.unexplained, tree.certain_share)
     changed = sorted({*moved.tolist(), *tree.parents[moved].tolist()})
-    fitted = moving_by_themselves(body, parts, changed, evidence.confidence)
-    of = (label, fitted.R, fitted.t, tree.parents, evidence.confidence, evidence.noise)
-    new = tree._replace(
-        label=label,
-        rest=tree.rest + shifts,
-        R=fitted.R,
-        t=fitted.t,
-        unexplained=fitted.residual,
-        W=skinning(body.V, body.F, body.x, *of),
-    )
-    beside = np.isin(np.arange(len(tree.parents)), changed) | np.isin(tree.parents, changed)
-    return new._replace(drift=np.where(beside, new.drift_at(new.rest), tree.drift))
+    return refitted_tree(body, tree._replace(label=label, rest=tree.rest + shifts), changed, evidence)
 
 
 def _with_border_moved(V: Floats, label: Ints, tree: FirstTree, joint: int, shift: Floats) -> Ints:
