@@ -138,19 +138,20 @@ def hinge_offsets(
     return offsets
 
 
-def hinge_spreads(
+def hinge_ways(
     tree: FirstTree, costs: HingeCosts, rest: Floats, certain: Floats, settings: HingePlacesSettings | None = None
-) -> Floats:
-    """(part,) largest distance between two of the places where halves of the frames, by each border shape, bend a joint's limb,
-    mesh unit; infinite where one of them lies at an end of the places, NaN where none were tried.
+) -> dict[int, Floats]:
+    """By joint, (half and border shape,) ways along its limb to where halves of the frames bend it, mesh unit; infinite where
+    that lies at an end of the places.
 
     Arguments are as in `hinge_shifts`.
     """
-    spreads = np.full(len(rest), np.nan)
+    ways = dict[int, Floats]()
     for limb in _limbs(tree, costs, rest, certain, settings or HingePlacesSettings()):
         sums = np.concatenate([limb.square[half].sum(axis=0) for half in _halves(len(certain))])
-        spreads[limb.joint] = np.ptp(np.nan_to_num([_least(limb.along, cost) for cost in sums], nan=np.inf))
-    return spreads
+        least = np.array([_least(limb.along, cost) for cost in sums])
+        ways[limb.joint] = np.where(np.isnan(least), np.inf, least)
+    return ways
 
 
 class _Limb(NamedTuple):

@@ -29,7 +29,7 @@ from kinetree.tasks.numerics.structure.surface_evidence import (
     of_mirrored_limbs,
     rooted,
 )
-from kinetree.tasks.numerics.structure.trunk_bends import LARGER_SPREAD, SPREAD, with_joints_at_bends
+from kinetree.tasks.numerics.structure.trunk_bends import with_joints_at_bends
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 
@@ -72,7 +72,7 @@ def with_end_joints(
         without = _without_close_joints(body, tree, extended, pairs, evidence)
         if without is not extended:
             return without
-        return _with_settled_trunk(body, tree, extended, known, pairs, evidence, LARGER_SPREAD)[1]
+        return _with_settled_trunk(body, tree, extended, known, pairs, evidence, are_needed=True)[1]
     divided = _with_trunk_divided_anew(body, tree, int(single[0]), pairs, evidence)
     if divided is None:
         return extended
@@ -87,18 +87,19 @@ def _with_settled_trunk(
     known: KnownFits,
     pairs: LimbPairs,
     evidence: SurfaceEvidence,
-    most: float = SPREAD,
+    *,
+    are_needed: bool = False,
 ) -> tuple[FirstTree, FirstTree]:
     """The tree and the extended one; where surfaces show a joint amid two of the trunk, these two are where they bend, first.
 
     So flesh of a neighbour shows no joint, nor does flesh that bends between two joints (`roomy_rings`).
 
-    most : see `trunk_bends.SPREAD`
+    are_needed : see `trunk_bends.BOTH_SIDES`
     """
     trunk = joints_between_pairs(rooted(tree), pairs)
     if len(trunk) < 2 or not amid_two(extended, pairs):
         return tree, extended
-    settled = with_joints_at_bends(body, tree, trunk.tolist(), evidence, most)
+    settled = with_joints_at_bends(body, tree, trunk.tolist(), evidence, are_needed=are_needed)
     if settled is None:
         return tree, extended
     return settled, _with_shown_joints(body, settled, known, pairs, evidence, roomy=True)

@@ -15,7 +15,7 @@ import numpy as np
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
-from kinetree.tasks.numerics.structure.hinge_places import HingePlacesSettings, hinge_shifts, hinge_spreads
+from kinetree.tasks.numerics.structure.hinge_places import HingePlacesSettings, hinge_shifts, hinge_ways
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.refitted_tree import refitted_tree
@@ -31,20 +31,21 @@ SPREAD = 0.26
 joints of the trunk are right but for their places have 0.02 to 0.24; person 606, in 24 frames of 3,000 vertices, whose lower
 one is flesh of the hips, has 0.29; two humans whose cut has one of three and one midway have 0.97 and more at one of them."""
 
-LARGER_SPREAD = 0.45
-"""The same where all joints that surfaces show are needed (`close_joints`), as that of 606 is not. Person 842, whose two are
-right, has 0.36."""
+BOTH_SIDES = 0.25
+"""How far on the other side of a joint some half of the frames bends the trunk than the others, radii, below which it is where
+it turns all the same, if all joints that surfaces show are needed (`close_joints`), as that of 606 is not. People 842 and 850,
+whose two are right, have 0; those two humans 0.6."""
 
 
 def with_joints_at_bends(
-    body: MovingSurface, tree: FirstTree, joints: Collection[int], evidence: SurfaceEvidence, most: float = SPREAD
+    body: MovingSurface, tree: FirstTree, joints: Collection[int], evidence: SurfaceEvidence, *, are_needed: bool = False
 ) -> FirstTree | None:
     """The tree with some of its joints, and the borders there, where the surfaces bend; None where halves of the frames do not
     agree on one of these joints.
 
-    tree   : without joints that surfaces alone show
-    joints : by the parts that turn about them, not the root
-    most   : see `SPREAD`
+    tree       : without joints that surfaces alone show
+    joints     : by the parts that turn about them, not the root
+    are_needed : see `BOTH_SIDES`
     """
     frames = laid_frames(len(body.x))
     if not len(frames):
@@ -52,8 +53,8 @@ def with_joints_at_bends(
     surfaces = {f: evidence.surface(f) for f in frames.tolist()}
     costs = hinge_costs(body.V, body.F, body.area, tree, surfaces, OF_TRUNK, joints)
     certain = np.ones((len(frames), len(tree.parents))) if tree.certain_share is None else tree.certain_share[frames]
-    spreads = hinge_spreads(tree, costs, tree.rest, certain, OF_TRUNK)[[*joints]]
-    if not (spreads < most * tree.radius[[*joints]]).all():
+    ways = hinge_ways(tree, costs, tree.rest, certain, OF_TRUNK)
+    if not all(joint in ways and _is_settled(ways[joint] / tree.radius[joint], are_needed) for joint in joints):
         return None
     spans = [(frames >= first) & (frames < behind) for first, behind in score_spans(len(body.x), body.takes)]
     shifts = hinge_shifts(tree, costs, tree.rest, certain, spans, OF_TRUNK)
@@ -65,6 +66,13 @@ def with_joints_at_bends(
         label = _with_border_moved(body.V, label, tree, joint, shifts[joint])
     changed = sorted({*moved.tolist(), *tree.parents[moved].tolist()})
     return refitted_tree(body, tree._replace(label=label, rest=tree.rest + shifts), changed, evidence)
+
+
+def _is_settled(ways: Floats, is_needed: bool) -> bool:
+    """Whether halves of the frames agree on a joint, by ways in radii."""
+    if not np.isfinite(ways).all():
+        return False
+    return bool(np.ptp(ways) < SPREAD or (is_needed and min(ways.max(), -ways.min()) < BOTH_SIDES))
 
 
 def _with_border_moved(V: Floats, label: Ints, tree: FirstTree, joint: int, shift: Floats) -> Ints:

@@ -17,7 +17,7 @@ from kinetree.tasks.numerics.structure.hinge_places import (
     HingePlacesSettings,
     hinge_offsets,
     hinge_shifts,
-    hinge_spreads,
+    hinge_ways,
     limb_axis,
 )
 
@@ -245,16 +245,18 @@ def test_the_offset_is_how_far_the_joint_lies_from_where_halves_bend_the_limb() 
     assert 0.3 * tree.radius[2] < apart < 0.5 * tree.radius[2], "second frames disagree by a radius, second quarters do not"
 
 
-def test_the_spread_is_the_largest_distance_between_places_of_halves() -> None:
+def test_ways_are_those_to_the_places_of_halves() -> None:
     tree, costs = costs_of(0.0)
-    step = 0.8 * tree.radius[2]
-    places = HingePlacesSettings().places
-    for far, expected in ((0.0, 0.0), (0.8, step), (9.0, np.inf)):
+    places, radius = HingePlacesSettings().places, float(tree.radius[2])
+    for far, expected in ((0.0, [0.0] * 8), (0.8, [0.0, 0.8, 0.0, 0.0, 0.0, 0.4, 0.0, 0.4]), (9.0, None)):
         square = np.broadcast_to(1.0 + places**2, costs.square.shape).copy()
         square[::2, :, 1] = 1.0 + (places - far) ** 2
-        spread = hinge_spreads(tree, costs._replace(square=square), tree.rest, ALL)
-        np.testing.assert_allclose(spread[2], expected, atol=1e-9)
-    assert np.isnan(spread[0]), "nothing was tried there"
+        ways = hinge_ways(tree, costs._replace(square=square), tree.rest, ALL)
+        if expected is None:
+            assert np.isinf(ways[2]).any()
+        else:
+            np.testing.assert_allclose(ways[2], radius * np.array(expected), atol=1e-9)
+        assert 0 not in ways, "nothing was tried there"
 
 
 def test_a_limb_that_bends_beyond_all_places_has_the_offset_of_the_last_and_a_bent_limb_has_none() -> None:

@@ -22,7 +22,6 @@ from kinetree.tasks.numerics.structure.pruning import MIDWAY, Dropped
 from kinetree.tasks.numerics.structure.shown_joints import with_end_joints
 from kinetree.tasks.numerics.structure.skinning import skinning
 from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
-from kinetree.tasks.numerics.structure.trunk_bends import LARGER_SPREAD
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 
@@ -121,7 +120,8 @@ def test_where_a_joint_is_shown_amid_two_these_go_to_their_bends_and_it_must_lie
     asked: list[Any] = []
     evidence: Any = None
 
-    def at_bends(_body: Any, _tree: Any, joints: list[int], _evidence: Any, _most: float) -> FirstTree | None:
+    def at_bends(_body: Any, _tree: Any, joints: list[int], _evidence: Any, *, are_needed: bool) -> FirstTree | None:
+        assert not are_needed
         asked.extend(joints)
         return settled if settles else None
 
@@ -142,18 +142,18 @@ def test_where_a_joint_is_shown_amid_two_these_go_to_their_bends_and_it_must_lie
 def test_halves_of_the_frames_may_agree_less_where_no_close_joint_goes(one_goes: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     body, two = trunk_with_two_joints(bending((-1.0, 1.0)), (-1.0, 1.0), (-1.0, 1.0))
     extended, fewer = with_joint_amid(two, (2,)), two._replace(drift=two.drift + 1.0)
-    spreads: list[tuple[float, ...]] = []
+    asked: list[dict[str, bool]] = []
     monkeypatch.setattr(numerics, "limb_pairs", lambda *of: two_pairs(body))
     for kept in ("without_inertial_joints", "without_smeared_ends"):
         monkeypatch.setattr(numerics, kept, lambda _body, tree, *of: tree)
     monkeypatch.setattr(numerics, "all_end_rings", lambda *of: [])
     monkeypatch.setattr(numerics, "_with_shown_joints", lambda *of: extended)
     monkeypatch.setattr(numerics, "_without_close_joints", lambda *of: fewer if one_goes else extended)
-    monkeypatch.setattr(numerics, "_with_settled_trunk", lambda *of: spreads.append(of[6:]) or of[1:3])
+    monkeypatch.setattr(numerics, "_with_settled_trunk", lambda *of, **how: asked.append(how) or of[1:3])
     evidence: Any = None
     found = with_end_joints(body, two, np.zeros(0, np.int64), [], evidence, np.ones(body.x.shape[:2]), 0.002)
     assert found is (fewer if one_goes else extended)
-    assert spreads == [(), *([] if one_goes else [(LARGER_SPREAD,)])]
+    assert asked == [{}, *([] if one_goes else [{"are_needed": True}])]
 
 
 def test_a_trunk_with_one_joint_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:

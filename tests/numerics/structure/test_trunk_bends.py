@@ -11,7 +11,7 @@ from trunk import trunk_with_two_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
-from kinetree.tasks.numerics.structure.trunk_bends import with_joints_at_bends
+from kinetree.tasks.numerics.structure.trunk_bends import _is_settled, with_joints_at_bends
 
 TRUE = (-1.2, 1.2)
 """Heights of the joints."""
@@ -73,3 +73,13 @@ def test_none_where_a_part_holds_a_joint_that_the_cut_has_not_found() -> None:
 def test_none_in_few_frames() -> None:
     body, tree, evidence = bent(TRUE, frames=5)
     assert with_joints_at_bends(body, tree, TRUNK, evidence) is None
+
+
+@pytest.mark.parametrize(
+    ("ways", "settled", "if_needed"),
+    [((0.1, 0.3), True, True), ((0.1, 0.5), False, True), ((-0.2, 0.5), False, True), ((-0.3, 0.5), False, False),
+     ((0.1, np.inf), False, False)],
+)  # fmt: skip
+def test_when_a_joint_is_settled(ways: tuple[float, ...], settled: bool, if_needed: bool) -> None:
+    assert _is_settled(np.array(ways), False) == settled
+    assert _is_settled(np.array(ways), True) == if_needed
