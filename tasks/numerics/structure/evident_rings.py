@@ -99,8 +99,9 @@ def _across_parts(
 ) -> Scores:
     """Of each part's rings the likeliest one, if it shows and turns enough; rings across limbs of a pair left out.
 
-    At an end it is the likeliest of all: where a ring shows most that is too close to the joint before it, those beyond show a
-    part of the same. Across the trunk it is that of those with enough score.
+    At an end, as in a head, it is the likeliest of all: where a ring shows most that is too close to the joint before it, those
+    beyond show a part of the same. Across the trunk, and in limbs with a mirror image, where rings so close are none whatever
+    they show, it is the likeliest of those with enough score.
     """
     evident: Scores = {}
     for part in sorted({ring.cut.part for ring in rings}):
@@ -108,7 +109,8 @@ def _across_parts(
         if own:
             least = {k: needed_score(rings[k], chosen) for k in own}
             best = max(shown, key=lambda row: max(row[k].score / least[k] for k in own))
-            asked = [k for k in own if not rings[k].cut.hung or best[k].score >= least[k]] or own
+            of_all = not rings[own[0]].cut.hung and not rings[own[0]].is_mirrored
+            asked = [k for k in own if of_all or best[k].score >= least[k]] or own
             k = max(asked, key=lambda k: (_rank(rings[k], best[k]), k))
             if best[k].score >= least[k] and _is_joint(rings[k], best[k], chosen):
                 evident[k] = best[k].score

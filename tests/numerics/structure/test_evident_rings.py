@@ -80,6 +80,13 @@ def test_where_a_ring_close_to_the_joint_before_shows_most_those_beyond_are_none
     assert list(evident_rings(TREE, [close, ring(1, 7.0)], [evidence])) == joints
 
 
+def test_in_a_limb_with_a_mirror_image_those_beyond_may_be_joints_all_the_same() -> None:
+    chosen, close = EvidentRingsSettings(), ring(2, 4.0)
+    close.piece.joint = close.cut.centre - [0.0, 0.0, 1.0]
+    between = 0.5 * (chosen.least_score + chosen.least_score_if_short)
+    assert list(evident_rings(TREE, [close, ring(2, 7.0)], [[shows(between, 1.2), shows(between, 1.1)]])) == [1]
+
+
 def test_a_part_is_judged_in_the_take_that_shows_most() -> None:
     little, much = [shows(0.1)], [shows(0.3)]
     assert evident_rings(TREE, [ring(0, -2.0, (2,))], [little, much, little]) == {0: 0.3}
