@@ -28,6 +28,7 @@ def trunk_slices(body: MovingSurface, tree: FirstTree, leaves: Ints, pairs: Limb
     """The parts of the trunk that are slices, none beside another one.
 
     leaves : (leaf,) vertices at the ends of limbs
+    pairs  : limbs that are mirror images
     """
     found: list[Slice] = []
     of_trunk = _of_trunk(tree, leaves)
