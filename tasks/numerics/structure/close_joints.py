@@ -1,7 +1,8 @@
 """Joints that a cut has close to one of the trunk that the frames' surfaces show: may be the same one, smeared (ours).
 
 An alignment spreads the turn of a spine over the trunk, so that a cut may have a joint beside the true one. A ring then shows
-the true one as one more, if it lies far enough away.
+the true one as one more, if it lies far enough away. Amid two joints that are right a ring shows one that is none, where the
+spine between them is short (`roomy_rings`, see `trunk_bends`).
 """
 
 from collections.abc import Sequence

@@ -131,10 +131,8 @@ def hinge_offsets(
     for limb in _limbs(tree, costs, rest, certain, settings or HingePlacesSettings()):
         if not limb.is_long:
             continue
-        sums = np.concatenate([limb.square[half].sum(axis=0) for half in _halves(len(certain))])
-        ways = np.array([_least(limb.along, cost) for cost in sums])
-        ways = np.where(np.isnan(ways), limb.along[sums.argmin(axis=1)], ways)
-        offsets[limb.joint] = np.sqrt(np.square(ways).mean())
+        ways, least = _ways_of_halves(limb)
+        offsets[limb.joint] = np.sqrt(np.square(np.where(np.isnan(ways), least, ways)).mean())
     return offsets
 
 
@@ -146,12 +144,8 @@ def hinge_ways(
 
     Arguments are as in `hinge_shifts`.
     """
-    ways = dict[int, Floats]()
-    for limb in _limbs(tree, costs, rest, certain, settings or HingePlacesSettings()):
-        sums = np.concatenate([limb.square[half].sum(axis=0) for half in _halves(len(certain))])
-        least = np.array([_least(limb.along, cost) for cost in sums])
-        ways[limb.joint] = np.where(np.isnan(least), np.inf, least)
-    return ways
+    limbs = _limbs(tree, costs, rest, certain, settings or HingePlacesSettings())
+    return {limb.joint: np.nan_to_num(_ways_of_halves(limb)[0], nan=np.inf) for limb in limbs}
 
 
 class _Limb(NamedTuple):
@@ -220,6 +214,14 @@ def _bones(tree: FirstTree, rest: Floats, joint: int, end: Floats) -> Floats:
     below = np.flatnonzero(tree.parents == joint)
     end = rest[below].mean(axis=0) if len(below) else end
     return np.stack([rest[joint] - rest[tree.parents[joint]], end - rest[joint]])
+
+
+def _ways_of_halves(limb: _Limb) -> tuple[Floats, Floats]:
+    """(half and border shape,) ways to where each half of the frames bends a limb, NaN at an end of the places · ways to the
+    place of those tried that leaves least; mesh unit.
+    """
+    sums = np.concatenate([limb.square[half].sum(axis=0) for half in _halves(len(limb.square))])
+    return np.array([_least(limb.along, cost) for cost in sums]), limb.along[sums.argmin(axis=1)]
 
 
 def _agreed(along: Floats, square: Floats, chosen: HingePlacesSettings) -> float:

@@ -20,7 +20,7 @@ with 0.49 to 0.57; of the 26 pairs of true joints within 1.35 radii three have 0
 
 AMID = 0.6
 """Distance of a part's joint from the middle between the two limbs of a pair that it carries, in radii of its border, below
-which it is flesh about them, if it carries nothing else. People 14, 758 and 781 have such flesh, with 0.22 to 0.27; chests
+which it is flesh about them, if it carries nothing else. People 14, 758 and 781 have such flesh, with 0.22 to 0.29; chests
 and pelvises have 0.75 and more but for that of the ballet (every fourth frame), which carries a neck too."""
 
 
@@ -40,8 +40,9 @@ def trunk_slices(body: MovingSurface, tree: FirstTree, leaves: Ints, pairs: Limb
         if _is_amid_limbs(tree, part, pairs):
             found.append(Slice(part, int(tree.parents[part]), tuple(below.tolist()), np.full(len(body.V), np.inf)))
             continue
-        near = (k for k in below[of_trunk[below]].tolist() if _distance(tree, part, tree.rest[k], tree.radius[k]) < NEAR)
-        found.extend(slice_between(body, tree, k, part) for k in list(near)[:1])
+        near = [k for k in below[of_trunk[below]].tolist() if _distance(tree, part, tree.rest[k], tree.radius[k]) < NEAR]
+        if near:
+            found.append(slice_between(body, tree, near[0], part))
     return found
 
 
