@@ -72,5 +72,5 @@ def articulation(known: Known, uncertain: tuple[int, ...] = SPOILT) -> Kinematic
         part=own, border_drift=np.zeros(0), border_degrees=np.zeros(0), joint_of_part=np.array([0, 1, 3, 4]), dropped=(),
         free_length=np.zeros(5), free_deviation=np.zeros(5), spread=np.full(5, np.nan), agreeing=np.zeros(5, int),
         joint_residual=np.zeros(5), surface_offset=np.full(5, np.nan), hinge_offset=np.full(5, np.nan),
-        border_radius=np.full(5, np.nan),
+        border_radius=np.full(5, np.nan), partner=np.full(5, -1),
     )  # fmt: skip

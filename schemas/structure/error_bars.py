@@ -46,6 +46,8 @@ class ErrorBars(Artifact):
     """Range of turning of the joint right below that turns most; 0 where there is none."""
     softness: Annotated[Floats, Array("float64", JOINT, finite=False)]
     """How much of the skin near the joint follows other joints than the one that it follows most, 0 to 1."""
+    asymmetry: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
+    """Difference between the lengths of the joint's bone and of that bone's mirror image; NaN also where it has none."""
     agreeing: Annotated[Ints, Array("int32", JOINT)]
     """Cuts that have the joint."""
     support: Annotated[Ints, Array("int32", JOINT)]

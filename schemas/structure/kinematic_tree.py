@@ -134,6 +134,8 @@ class KinematicTree(ArticulatedBody):
     where no straight limb is on both sides."""
     border_radius: Annotated[Floats, Array("float64", JOINT, unit="length", finite=False)]
     """Root mean square distance of the line between a joint's two parts from the middle of it; NaN for root and leaves."""
+    partner: Annotated[Ints, Array("int32", JOINT)]
+    """The joint that is its mirror image in the other limb of a pair; −1 where there is none."""
     is_given: bool = False
     """Whether the frames give the correspondence, as with fixed connectivity, so that no alignment moves a joint."""
     end_joints: tuple[int, ...] = ()

@@ -37,10 +37,11 @@ def graph_skeleton(
     by_centres = params.joints == "centres"
     tree, derivation = _centres(s, alignment, meshes, params) if by_centres else (_edges(s, motions), None)
     count, parts = len(tree.parents), int(s.part.max()) + 1
+    unknown = np.full(count, np.nan)
     derived = derivation._asdict() if derivation else numerics.Derivation(
         np.array(s.part, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0),
-        np.full(parts, -1), (), np.zeros(count), np.zeros(count), np.full(count, np.nan), np.zeros(count, np.int64),
-        np.zeros(count), *np.full((3, count), np.nan),
+        np.full(parts, -1), (), np.zeros(count), np.zeros(count), unknown, np.zeros(count, np.int64),
+        np.zeros(count), unknown, unknown, unknown, np.full(count, -1),
     )._asdict()  # fmt: skip
     return KinematicTree(
         frames=tuple(motions),

@@ -9,6 +9,7 @@ from kinetree.schemas.structure.kinematic_tree import KinematicTree
 from kinetree.schemas.structure.skeleton import Skeleton
 from kinetree.tasks.numerics.geometry.surface import surface_areas
 from kinetree.tasks.numerics.structure import error_bars as numerics
+from kinetree.tasks.numerics.structure.joint_partners import bone_asymmetry
 from kinetree.tasks.numerics.structure.skin_softness import skin_softness
 from kinetree.tasks.numerics.structure.turning_resistance import turning_resistance
 
@@ -38,6 +39,7 @@ def error_bars(skeleton: Skeleton, kinematic_tree: KinematicTree) -> ErrorBars:
         hinge_offset=of_joints(features.hinge),
         turning_below=of_joints(features.below),
         softness=of_joints(features.softness),
+        asymmetry=of_joints(features.asymmetry),
         agreeing=kinematic_tree.agreeing,
         support=np.where(turning, skeleton.support, 0),
         evidence=_evidence(skeleton, kinematic_tree),
@@ -58,7 +60,7 @@ def nothing_known(skeleton: Skeleton) -> ErrorBars:
         joints=skeleton.names, frames=skeleton.frames, cuts=0, expected=unknown, bound=unknown,
         in_frame=np.full((len(skeleton.frames), joints), np.nan), drift=unknown, spread=unknown, residual=unknown,
         surface_offset=unknown, turning_resistance=unknown, hinge_offset=unknown, turning_below=unknown, softness=unknown,
-        agreeing=none, support=none, evidence=(None,) * joints,
+        asymmetry=unknown, agreeing=none, support=none, evidence=(None,) * joints,
     )  # fmt: skip
 
 
@@ -82,8 +84,18 @@ def joint_features(skeleton: Skeleton, kinematic_tree: KinematicTree) -> numeric
     np.maximum.at(below, parents[parents >= 0], degrees[parents >= 0])
     return numerics.JointFeatures(
         drift, spread, residual, degrees, length, offset, resistance, np.array(tree.hinge_offset), below, softness,
-        radius, np.isin(joints, tree.end_joints), tube, narrowing, mirrored, confidence, size,
+        radius, np.isin(joints, tree.end_joints), tube, narrowing, mirrored, _asymmetry(skeleton, tree), confidence, size,
     )  # fmt: skip
+
+
+def _asymmetry(skeleton: Skeleton, kinematic_tree: KinematicTree) -> Floats:
+    """(joint,) difference between the lengths of a joint's bone and of that bone's mirror image, mesh unit; NaN where it has
+    none, and where one of both joints is placed by the other.
+    """
+    partner = np.array(kinematic_tree.partner, np.int64)
+    is_placed = np.isin(np.arange(len(partner)), kinematic_tree.mirrored_joints)
+    unlike = bone_asymmetry(np.array(skeleton.parents, np.int64), partner, np.array(skeleton.lengths))
+    return np.where(is_placed | is_placed[partner], np.nan, unlike)
 
 
 def _evidence(skeleton: Skeleton, kinematic_tree: KinematicTree) -> tuple[EvidenceKind | None, ...]:

@@ -57,5 +57,5 @@ def tree_of(skeleton: Skeleton) -> KinematicTree:
         free_length=skeleton.lengths, free_deviation=0.01 * skeleton.lengths,
         spread=np.full(len(parents), np.nan), agreeing=np.zeros(len(parents), int), joint_residual=np.zeros(len(parents)),
         surface_offset=np.full(len(parents), np.nan), hinge_offset=np.full(len(parents), np.nan),
-        border_radius=np.full(len(parents), np.nan),
+        border_radius=np.full(len(parents), np.nan), partner=np.full(len(parents), -1),
     )  # fmt: skip

@@ -124,3 +124,14 @@ def test_a_joint_that_surfaces_show_is_expected_at_half_the_error_of_another() -
     plain, shown = error_bars(body, tree), error_bars(body, tree.model_copy(update={"end_joints": (3,)}))
     np.testing.assert_allclose(shown.expected[[1, 3, 4]], plain.expected[[1, 3, 4]] * [1.0, 0.5, 1.0])
     assert shown.evidence[3] == "motion"
+
+
+def test_bones_of_a_pair_of_limbs_are_compared_and_not_where_one_of_both_is_placed_by_the_other() -> None:
+    skeleton_, tree = both(drift=0.1, spread=0.05, joint_residual=0.02, cuts=4)
+    told = tree.model_copy(update={"partner": np.array([-1, -1, -1, 4, 3])})
+    length = skeleton_.lengths
+    found = error_bars(skeleton_, told)
+    assert found.asymmetry[3] == found.asymmetry[4] == pytest.approx(abs(length[3] - length[4]))
+    assert np.isnan(found.asymmetry[:3]).all()
+    assert (found.expected[[3, 4]] != error_bars(skeleton_, tree).expected[[3, 4]]).all()
+    assert np.isnan(error_bars(skeleton_, told.model_copy(update={"mirrored_joints": (4,)})).asymmetry).all()

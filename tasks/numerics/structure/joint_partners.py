@@ -84,6 +84,19 @@ def joint_partners(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float 
     return partner
 
 
+def bone_asymmetry(parents: Ints, partner: Ints, length: Floats) -> Floats:
+    """(joint,) difference between the lengths of a joint's bone and of that bone's mirror image; NaN where it has none.
+
+    Of bones that are mirror images both ends are, or the ends nearer to the root are one.
+
+    parents, partner : (joint,) the joint above each one, and its mirror image; −1 where there is none
+    length           : (joint,) of the bone from the joint above
+    """
+    above = parents[partner]
+    is_one = (parents == above) | (partner[parents] == above)
+    return np.where((partner >= 0) & (parents >= 0) & is_one, np.abs(length - length[partner]), np.nan)
+
+
 def symmetry(F: Ints, parts: RootedParts, pairs: LimbPairs, paired: float = PAIRED) -> int:
     """Pairs of partners, less the joints of mirrored limbs that have no partner.
 
@@ -143,9 +156,14 @@ def _mean_distance(distance: Floats) -> float:
 
 
 def _partners(one: Limb, other: Limb, radius: Floats, paired: float) -> Ints:
-    """(partners, 2) rows of joints of two limbs that lie equally far from their ends; the least sum of differences."""
+    """(partners, 2) rows of joints of two limbs that lie equally far from their ends; the least sum of differences.
+
+    Partners follow each other alike from the ends inwards: exchanged they may leave the same sum, where one limb's joints all
+    lie farther from the end.
+    """
     with np.errstate(invalid="ignore"):  # joints that no path leads to have no partner
         apart = np.abs(one.level[:, None] - other.level) / np.minimum(radius[one.part][:, None], radius[other.part])
     cost = np.minimum(np.nan_to_num(apart, nan=paired, posinf=paired), paired)
     row = np.stack(linear_sum_assignment(cost), axis=1)
-    return np.asarray(row[cost[row[:, 0], row[:, 1]] < paired])
+    row = row[cost[row[:, 0], row[:, 1]] < paired]
+    return np.stack([row[:, 0], np.sort(row[:, 1])], axis=1)

@@ -13,7 +13,7 @@ from kinetree.tasks.numerics.structure.joint_names import joint_names
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts, joint_partners
 from kinetree.tasks.numerics.structure.joint_rotations import widest_turning_range
 from kinetree.tasks.numerics.structure.laid_parts import LaidParts
-from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs, limb_pairs
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs, limb_pairs
 from kinetree.tasks.numerics.structure.linked_parts import with_rigid_links
 from kinetree.tasks.numerics.structure.mirrored_joints import mirrored_joints
 from kinetree.tasks.numerics.structure.narrowings import narrowings
@@ -83,6 +83,7 @@ class Derivation(NamedTuple):
     hinge_offset   : (joint,) the same along its limb, from where halves of the frames' surfaces bend it, mesh unit; NaN also
                      where no straight limb is
     border_radius  : (joint,) of the border at the joint, mesh unit; NaN for the root and ends of bones
+    partner        : (joint,) the joint that is its mirror image, see `joint_partners`; −1 where there is none
     end_joints     : joints that the frames' surfaces alone show, see `extended_tree`
     neck_joints    : joints that the shape alone shows, see `necks`
     mirrored_joints : joints that their mirror images alone show, see `mirrored_joints`
@@ -104,6 +105,7 @@ class Derivation(NamedTuple):
     surface_offset: Floats
     hinge_offset: Floats
     border_radius: Floats
+    partner: Ints
     end_joints: tuple[int, ...] = ()
     neck_joints: tuple[int, ...] = ()
     mirrored_joints: tuple[int, ...] = ()
@@ -148,7 +150,7 @@ def kinematic_tree(
     joints = joints_of_all_cuts(first, further, body.size)
     if has_links:
         first, joints = with_rigid_links(body, first, joints, NOISE * body.size)
-    pairs = limb_pairs(V, body.F, leaves) if has_necks or has_narrowings or has_mirrored_joints else NO_PAIRS
+    pairs = limb_pairs(V, body.F, leaves)
     hanging = _heads(body, first, pairs) if has_necks else []
     tree = posed_tree(body, first, confidence, joints, laid, hanging)
     if up is not None:
@@ -163,7 +165,8 @@ def kinematic_tree(
         leaves = np.concatenate([leaves, second_ends(V, body.F, tree.label, tree.parents, leaves)])
     ends = end_effectors(V, body.F, tree.label, tree.parents, leaves)
     made, order = _assembled(V, tree, ends, score_spans(len(body.x), body.takes))
-    return made, _derivation(first, tree, made, order)
+    partner = joint_partners(body.F, RootedParts(tree.label, tree.parents, tree.radius), pairs)
+    return made, _derivation(first, tree, made, order, partner)
 
 
 def _heads(body: MovingSurface, first: FirstTree, pairs: LimbPairs) -> list[Tube]:
@@ -218,10 +221,11 @@ def _assembled(V: Floats, tree: PosedTree, ends: Ints, spans: Ints) -> tuple[Kin
     return body, order
 
 
-def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: Ints) -> Derivation:
+def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: Ints, partner: Ints) -> Derivation:
     """The graph of all parts, what became of each part, and lengths before they are held.
 
-    order : (joint,) part in the tree's order, or beyond them an end effector
+    order   : (joint,) part in the tree's order, or beyond them an end effector
+    partner : (part,) the part whose joint is the mirror image of each one's; −1 where there is none
     """
     parts, joint = len(tree.parents), np.argsort(order)
     is_part, part = order < parts, np.minimum(order, parts - 1)
@@ -238,6 +242,7 @@ def _derivation(first: FirstTree, tree: PosedTree, body: KinematicTree, order: I
         surface_offset=np.where(is_part, tree.offset[part], np.nan),
         hinge_offset=np.where(is_part, tree.hinge[part], np.nan),
         border_radius=np.where(is_part & (part > 0), tree.radius[part], np.nan),
+        partner=np.where(is_part & (partner[part] >= 0), joint[partner[part]], -1),
         end_joints=_joints(joint, np.isin(tree.carrier, first.shown) & (tree.still == Still.NO)),
         neck_joints=_joints(joint, tree.still == Still.NECK),
         mirrored_joints=_joints(joint, tree.still == Still.MIRRORED),

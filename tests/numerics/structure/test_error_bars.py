@@ -14,6 +14,7 @@ SETTINGS = ErrorBarsSettings(
     across_tube=0.3,
     across_narrowing=0.45,
     across_mirrored=0.7,
+    alike=0.2,
     uncertain=2.0,
 )
 
@@ -25,7 +26,7 @@ def features(scale: float = 1.0, **changed: np.ndarray) -> JointFeatures:
         "degrees": np.full(3, 40.0), "resistance": np.full(3, 0.02), "hinge": np.full(3, np.nan),
         "below": np.zeros(3), "softness": np.full(3, 0.1), "radius": np.full(3, np.nan), "is_end_joint": np.zeros(3, np.bool_),
         "tube": np.full(3, np.nan), "narrowing": np.full(3, np.nan), "mirrored": np.full(3, np.nan),
-            "confidence": np.ones((5, 3)), **changed,
+        "asymmetry": np.full(3, np.nan), "confidence": np.ones((5, 3)), **changed,
     }  # fmt: skip
     unscaled = ("degrees", "resistance", "below", "softness", "is_end_joint", "confidence")
     return JointFeatures(**{n: value if n in unscaled else scale * value for n, value in evidence.items()})
@@ -172,6 +173,24 @@ def test_a_joint_that_surfaces_show_is_better_than_its_missing_cuts_say(offset: 
         np.testing.assert_allclose(bars.bound, plain.bound * [1.0, share, 1.0])
 
 
+def test_a_joint_whose_bone_is_not_as_long_as_its_mirror_image_is_worse_than_one_whose_bone_is() -> None:
+    """Each by a power of the difference; one without a mirror image stays, and one cut knows too little to tell."""
+    known, unlike = {"drift": np.full(3, 0.01), "spread": np.full(3, 0.004)}, np.array([np.nan, 0.008, 0.032])
+    plain, told = error_bars(features(**known), 4, SETTINGS), error_bars(features(**known, asymmetry=unlike), 4, SETTINGS)
+    expected = plain.expected ** [1.0, 0.8, 0.8] * [1.0, 0.008**0.2, 0.032**0.2]
+    np.testing.assert_allclose(told.expected, expected)
+    np.testing.assert_allclose(told.bound, 2.0 * expected)
+    one = error_bars(features(**known, asymmetry=unlike), 1, SETTINGS)
+    np.testing.assert_array_equal(one.expected, error_bars(features(**known), 1, SETTINGS).expected)
+
+
+def test_bones_of_equal_length_leave_the_least_error() -> None:
+    settings = SETTINGS._replace(several_cuts=SETTINGS.several_cuts._replace(least=0.002))
+    same, least = (error_bars(features(asymmetry=np.full(3, u)), 4, settings).expected for u in (0.0, 0.002))
+    np.testing.assert_array_equal(same, least)
+    assert (same > 0.0).all()
+
+
 def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None:
     rng = np.random.default_rng(0)
     drift, spread, residual, length, offset, resistance, hinge = np.exp(rng.normal(-5.0, 1.0, (7, 200)))
@@ -179,7 +198,7 @@ def test_a_power_law_is_found_again_and_no_exponent_has_the_wrong_sign() -> None
     resistance = np.maximum(resistance, 1e-4)
     degrees, sure = rng.uniform(5, 120, 200), np.ones((1, 200))
     known = (drift, spread, residual, degrees, length, offset, resistance, hinge, below, softness)
-    rows = JointFeatures(*known, drift, drift > 0.0, drift, drift, drift, sure, 1.0).logarithms(True)
+    rows = JointFeatures(*known, drift, drift > 0.0, drift, drift, drift, drift, sure, 1.0).logarithms(True)
     law = [5.5, 0.4, 0.5, 0.1, -0.6, -0.2, 0.3, 0.2, 0.2, -0.1, 0.3]
     assert fitted(rows, np.exp(rows @ law)) == pytest.approx(law)
     for wrong, value in ((3, -0.3), (4, 0.6), (6, -0.3), (7, -0.3), (8, -0.3), (9, 0.3), (10, -0.3)):

@@ -6,7 +6,10 @@ from articulated import Known, chain, surface, swings, three_arms
 
 from kinetree.tasks.numerics.structure.joint_partners import (
     PAIRED,
+    Limb,
     RootedParts,
+    _partners,
+    bone_asymmetry,
     in_mirrored_limbs,
     joint_partners,
     joints_between_pairs,
@@ -52,6 +55,15 @@ def test_equally_far_from_the_ends(heights: tuple[float, ...], found: dict[float
 def test_how_far_apart_they_may_be(paired: float, found: dict[float, float]) -> None:
     """In radii: they differ by one."""
     assert partners(-2.0, 1.0, paired=paired) == found
+
+
+def test_partners_follow_each_other_alike_though_exchanged_they_differ_by_less_in_radii() -> None:
+    """Both joints of the other limb lie nearer to its end; the outer one is narrower."""
+    radius = np.array([0.0, 3.76, 3.76, 3.42, 3.42])
+    one, other = Limb(np.array([2, 1]), np.array([37.2, 39.7])), Limb(np.array([4, 3]), np.array([35.3, 37.0]))
+    np.testing.assert_array_equal(_partners(one, other, radius, PAIRED), [[0, 0], [1, 1]])
+    radius[4] = 3.8
+    np.testing.assert_array_equal(_partners(one, other, radius, PAIRED), [[0, 0], [1, 1]])
 
 
 def test_limb_is_told_from_its_end_inwards() -> None:
@@ -126,3 +138,12 @@ def test_joints_between_pairs_have_both_limbs_of_each_on_one_side(parents, tips,
     parts = RootedParts(np.arange(count), np.array(parents), np.ones(count))
     pairs = LimbPairs(np.array(tips, np.int64).reshape(-1, 2), np.zeros((len(tips), 2, count)))
     assert joints_between_pairs(parts, pairs).tolist() == expected
+
+
+def test_bones_are_mirror_images_where_both_of_their_ends_are() -> None:
+    """Arms 1-2-3 and 4-5 on the root: the second bones hang on partners, 3 has none, and 6 and 7 hang on two that are none."""
+    parents, partner = np.array([-1, 0, 1, 2, 0, 4, 3, 5]), np.array([-1, 4, 5, -1, 1, 2, 7, 6])
+    length = np.array([0.0, 1.0, 2.0, 9.0, 1.5, 2.1, 3.0, 4.0])
+    none = np.nan
+    np.testing.assert_allclose(bone_asymmetry(parents, partner, length), [none, 0.5, 0.1, none, 0.5, 0.1, none, none])
+    np.testing.assert_array_equal(bone_asymmetry(parents, np.full(8, -1), length), np.full(8, none))

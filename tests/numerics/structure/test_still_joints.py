@@ -296,6 +296,9 @@ def test_a_leg_gets_the_ankle_that_the_other_one_has_and_the_derivation_says_so(
     np.testing.assert_allclose(body.rest[joint], ANKLE * [1.0, -1.0, 1.0], atol=1.5)
     assert np.isnan(derivation.spread[joint])
     np.testing.assert_allclose(body.weight.sum(axis=1), 1.0)
+    hips = np.flatnonzero((body.parents == 0) & (derivation.partner > 0))
+    assert {*derivation.partner.tolist()} == {-1, ankle, joint, *hips.tolist()}
+    np.testing.assert_array_equal(derivation.partner[[ankle, joint, *hips]], [joint, ankle, *hips[::-1]])
 
 
 def dumbbell(frames: int = 12) -> tuple[MovingSurface, Cut, np.ndarray]:
