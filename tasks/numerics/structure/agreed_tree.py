@@ -95,7 +95,7 @@ def agreed_tree(
         while across := trunk_slices(body, tree, leaves, pairs):
             tree = _without_slices(body, tree, across, confidence, settings)
         slices = mirrored_slices(body, tree, pairs, confidence, settings.pruning.unpaired.paired)
-        tree = _without_slices(body, tree, slices, confidence, settings)
+        tree = _without_slices(body, tree, slices, confidence, settings, MirroredSlicesSettings().most_drift)
         tree = _without_flesh(body, tree, leaves, pairs, confidence, settings)
     return AgreedTree(which, tree)
 
@@ -126,22 +126,35 @@ def _without_lone_joints(
 
 
 def _without_slices(
-    body: MovingSurface, tree: FirstTree, slices: Sequence[Slice], confidence: Floats, settings: KinematicTreeSettings
+    body: MovingSurface,
+    tree: FirstTree,
+    slices: Sequence[Slice],
+    confidence: Floats,
+    settings: KinematicTreeSettings,
+    most_drift: float = np.inf,
 ) -> FirstTree:
-    """The tree without slices of flesh, shared out between their neighbours so that few joints drift."""
+    """The tree without slices of flesh, shared out between their neighbours so that few joints drift.
+
+    most_drift : radii; a slice without which its joint drifts more stays
+    """
     chosen = MirroredSlicesSettings()
-    if not slices:
-        return tree
-    start = _pruned(body, tree)
-    tried = [_joints_without(body, tree, start, slices, [share] * len(slices), confidence, settings) for share in chosen.shares]
-    between = [_between(joints) for joints in tried]
-    drift = np.array(
-        [[max(drifts.get(frozenset((one.above, k)), np.inf) for k in one.below) for one in slices] for drifts in between]
-    )
-    first = (drift <= chosen.looser * drift.min(axis=0)).argmax(axis=0)
-    if (first == first[0]).all():
-        return _of_cut(tree, tried[first[0]])
-    return _of_cut(tree, _joints_without(body, tree, start, slices, [chosen.shares[k] for k in first], confidence, settings))
+    while slices:
+        start, count = _pruned(body, tree), len(slices)
+        tried = [_joints_without(body, tree, start, slices, [share] * count, confidence, settings) for share in chosen.shares]
+        drift = np.array([_widest(_between(joints, joints.drift), slices) for joints in tried])
+        first = (drift <= chosen.looser * drift.min(axis=0)).argmax(axis=0)
+        shares, is_one = [chosen.shares[k] for k in first], (first == first[0]).all()
+        left = tried[first[0]] if is_one else _joints_without(body, tree, start, slices, shares, confidence, settings)
+        in_radii = _widest(_between(left, left.drift / np.maximum(left.radius, np.finfo(float).tiny)), slices)
+        if (in_radii <= most_drift).all():
+            return _of_cut(tree, left)
+        slices = [one for one, widest in zip(slices, in_radii, strict=True) if widest <= most_drift]
+    return tree
+
+
+def _widest(between: dict[frozenset[int], float], slices: Sequence[Slice]) -> Floats:
+    """(slice,) the largest value of the joints in a slice's place, by the parts that meet in them; infinite without one."""
+    return np.array([max(between.get(frozenset((one.above, k)), np.inf) for k in one.below) for one in slices])
 
 
 def _without_flesh(
@@ -251,16 +264,16 @@ def _rise(before: TreeJoints, after: TreeJoints) -> float:
 
     Infinite where no joint comes: what lay beyond is gone as well then.
     """
-    old, new = _between(before), _between(after)
+    old, new = _between(before, before.drift), _between(after, after.drift)
     gone, come = [old[pair] for pair in old.keys() - new.keys()], [new[pair] for pair in new.keys() - old.keys()]
     return float(max(come, default=np.inf) / max(*gone, np.finfo(float).tiny))
 
 
-def _between(joints: TreeJoints) -> dict[frozenset[int], float]:
-    """Drift of every joint, by the parts that meet in it, as they were numbered before any was dropped."""
+def _between(joints: TreeJoints, values: Floats) -> dict[frozenset[int], float]:
+    """The value (part,) of every joint, by the parts that meet in it, as they were numbered before any was dropped."""
     tree = joints.left.part_tree.tree
     part = joints.left.origin[tree.order]
-    return {frozenset((int(part[k]), int(part[tree.parents[k]]))): float(joints.drift[k]) for k in range(1, len(part))}
+    return {frozenset((int(part[k]), int(part[tree.parents[k]]))): float(values[k]) for k in range(1, len(part))}
 
 
 def _of_cut(tree: FirstTree, joints: TreeJoints) -> FirstTree:

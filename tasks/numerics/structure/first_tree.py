@@ -148,7 +148,7 @@ def in_tree_order(joints: TreeJoints, parts: int) -> FirstTree:
         rest=joints.rest,
         drift=joints.drift,
         unexplained=np.ascontiguousarray(left.parts.residual[:, tree.order]),
-        radius=np.append(0.0, left.part_tree.borders.radius[tree.border[1:]]),
+        radius=joints.radius,
         end_x=np.zeros((len(joints.R), 0, 3)),
         graph=_graph(joints),
     )

@@ -45,10 +45,10 @@ class MirroredSlicesSettings(NamedTuple):
     """Of parts that touch each other, as those about a pelvis do: the two halves of a wolf's have lengths of 2.5 and 2.9, and
     mixtures of 2.8 and 3.9; a pelvis that one limb hangs on is 2.4 times as long as flesh above the other hip. True links from
     the pelvis to both hips of the dance are 0.8, 1.03 and 1.13 long, flesh above the hips of person 124 0.9."""
-    apart: SliceLimits = SliceLimits(0.7, 3.9, 2.5, 5.2)
+    apart: SliceLimits = SliceLimits(0.5, 3.9, 2.5, 5.2)
     """Of parts that do not. Slices beside shoulders have lengths of 1.0 to 3.8, the longer one of 1.17 and more, at most 2.4
-    times the other's, and mixtures of 1.3 to 5.1; flesh above the hips of person 740, who runs, 0.76 and 0.77, and 1.7 and 3.0.
-    The shortest upper arms and thighs have lengths of 4.8 and more."""
+    times the other's, and mixtures of 1.3 to 5.1; flesh above the hips of persons 740 and 892, who run, 0.62 to 0.77, and 1.7
+    to 3.0. Upper arms and thighs of people have lengths of 4.8 and more, of four-legged bodies 3.6 and more (`most_drift`)."""
     opposed: SliceLimits = SliceLimits(0.0, 2.2, 2.0, 5.2)
     """Of parts that touch each other and move as two, as flesh of two thighs does and links from a pelvis to both hips do not;
     they may be as short as can be. People 556 and 604, who run, and 628 and 704 have such parts, with lengths of 0.5 to 1.4 and
@@ -78,12 +78,17 @@ class MirroredSlicesSettings(NamedTuple):
     """How many times as long as a slice on one side alone the innermost part of its mirror image is, at least. Three were seen,
     with 2.4 to 4.2."""
     nearest: float = 0.55
-    """Length of an innermost part below which its two joints are one, if it is a mixture too (`mixture_within`). Flesh above
-    one hip of person 836, who runs, has 0.47; links from a pelvis to a hip of recorded bodies 0.66 and more."""
+    """Length of a part below which its two joints are one, if it is a mixture too (`mixture_within`), or lies farther out.
+    Flesh above one hip of person 836, who runs, has 0.47, and about a knee of 884 0.36, where it is no mixture (3.3); links
+    from a pelvis to a hip of recorded bodies have 0.66 and more."""
     shares: tuple[float, ...] = (0.3, 0.5, 0.7, 1.0, 1.4)
     """Distances from its outer joint, in that from its inner joint, below which a vertex goes to the limb, else to the trunk;
     of these the first with which the limb's joint drifts hardly more than with any. Chosen with `looser` on shoulders of the
     people who run, 1.2 % off then (1.7 with 0.5 for all), and of that body, 0.8 % off (2.5)."""
+    most_drift: float = 0.7
+    """Drift of the limb's joint without a slice, in radii of its border, at most: else the part is a bone. Upper arms of two
+    four-legged bodies are as short as slices, and nearly mixtures; without them shoulder and elbow are one joint, which drifts
+    by 0.93 to 0.98. Of 18 slices of people one has 0.47, half of an upper arm, the others 0.05 to 0.19."""
     looser: float = 1.3
     """Drift of the limb's joint, in the least, at most. The more of a slice goes to the limb, the farther inwards the joint
     lies, and the less it drifts until it is where the limb turns; from there on the drift hardly changes."""
@@ -185,10 +190,10 @@ def _within(
     """
     rows = limb.part.tolist()
     for below, part, above in zip(rows, rows[1:], rows[2:], strict=False):
-        short = [_radii_long(tree, *two) <= chosen.length_within for two in ((below, part), (part, above))]
-        if short == [True, False]:
+        length, beside = (_radii_long(tree, *two) for two in ((below, part), (part, above)))
+        if length <= chosen.length_within < beside:
             one = slice_between(body, tree, below, part)
-            if _mixture(body, tree, one, confidence) <= chosen.mixture_within:
+            if length < chosen.nearest or _mixture(body, tree, one, confidence) <= chosen.mixture_within:
                 yield one
 
 

@@ -100,6 +100,12 @@ class TreeJoints(NamedTuple):
     residual: Floats
 
     @property
+    def radius(self) -> Floats:
+        """(part,) of the border with the parent, mesh unit; 0 for the root."""
+        found = self.left.part_tree
+        return np.append(0.0, found.borders.radius[found.tree.border[1:]])
+
+    @property
     def motion(self) -> JointMotion:
         """Of the two parts at every joint but the root."""
         tree, seen = self.left.part_tree.tree, self.left.parts.confidence

@@ -173,8 +173,8 @@ def found_with(changed: Callable[[MirroredLimbs], MirroredLimbs], monkeypatch: p
         ((9.0, 0.5), (2.9, 2.9), 0.0, 1),
         ((2.5, 1.7), (5.3, 5.1), INNER, 0),
         ((1.1, 1.0), (5.1, 5.1), INNER, 2),
-        ((0.65, 0.65), (5.1, 5.1), INNER, 0),
-        ((0.75, 0.75), (5.1, 5.1), INNER, 2),
+        ((0.45, 0.45), (5.1, 5.1), INNER, 0),
+        ((0.55, 0.55), (5.1, 5.1), INNER, 2),
         ((1.1, 1.0), (3.5, 3.5), 0.0, 0),
         ((2.1, 1.5), (3.5, 3.5), 0.0, 2),
         ((2.1, 1.5), (3.7, 3.5), 0.0, 0),
@@ -360,6 +360,27 @@ def test_agreed_tree_has_none_where_vertices_were_aligned() -> None:
     assert 0.3 < (aligned.label[slices] == 0).mean() < 0.7
 
 
+@pytest.mark.parametrize(("most_drift", "gone"), [(0.7, 2), (0.0, 0), (np.inf, 2)])
+def test_a_part_without_which_the_limb_drifts_far_stays(most_drift: float, gone: int) -> None:
+    body, tree = seen()
+    left = agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE, most_drift)
+    assert len(left.parents) == len(tree.parents) - gone
+    assert (left is tree) == (gone == 0)
+
+
+def test_each_part_is_judged_by_its_own_joint(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With both gone one joint drifts far; the other goes by itself then."""
+    body, tree = seen()
+    slices = found_in((body, tree))
+    far = frozenset((slices[0].above, *slices[0].below))
+    between = agreed_tree._between
+    monkeypatch.setattr(agreed_tree, "_between", lambda *of: {k: 9.0 if k == far else v for k, v in between(*of).items()})
+    left = agreed_tree._without_slices(body, tree, slices, ONES, TREE, 0.7)
+    assert len(left.parents) == len(tree.parents) - 1
+    assert left.place[slices[0].part] >= 0
+    assert left.place[slices[1].part] < 0
+
+
 def test_tree_without_slices_stays_as_it_is() -> None:
     body, tree = seen(is_flesh=False)
     assert agreed_tree._without_slices(body, tree, found_in((body, tree)), ONES, TREE) is tree
@@ -367,7 +388,15 @@ def test_tree_without_slices_stays_as_it_is() -> None:
 
 @pytest.mark.parametrize(
     ("thigh", "flesh", "mixture", "count"),
-    [(2.5, 2.7, 2.9, 2), (2.7, 2.7, 2.9, 0), (2.5, 2.5, 2.9, 0), (2.5, 2.7, 3.1, 0), (2.5, np.inf, 2.9, 2)],
+    [
+        (0.5, 2.7, 9.9, 2),
+        (0.6, 2.7, 9.9, 0),
+        (2.5, 2.7, 2.9, 2),
+        (2.7, 2.7, 2.9, 0),
+        (2.5, 2.5, 2.9, 0),
+        (2.5, 2.7, 3.1, 0),
+        (2.5, np.inf, 2.9, 2),
+    ],
 )
 def test_slices_farther_out_lie_beside_long_parts(
     thigh: float, flesh: float, mixture: float, count: int, monkeypatch: pytest.MonkeyPatch
