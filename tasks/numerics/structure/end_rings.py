@@ -11,6 +11,7 @@ from kinetree.tasks.numerics.registration.correspondence import Target
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.frame_poses import FramePosesSettings, confident_share
+from kinetree.tasks.numerics.structure.hand_cuts import with_hand_rings
 from kinetree.tasks.numerics.structure.hinged_piece import HingedFit, laid_as_one, laid_hinged, sampled_piece
 from kinetree.tasks.numerics.structure.limb_cuts import limb_cuts
 from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs
@@ -130,7 +131,8 @@ def end_rings(V: Floats, F: Ints, area: Floats, tree: FirstTree, mirrored: Flags
     """
     N = smoothed_normals(V, F)
     of = (V, F, area, tree.label, tree.parents, tree.rest)
-    at_ends = [_ring(V, N, tree, cut)._replace(is_mirrored=bool(mirrored[cut.part])) for cut in end_cuts(*of)]
+    across = with_hand_rings(V, F, area, tree, end_cuts(*of), pairs)
+    at_ends = [_ring(V, N, tree, cut)._replace(is_mirrored=bool(mirrored[cut.part])) for cut in across]
     return [*at_ends, *(_ring(V, N, tree, cut) for cut in (*trunk_cuts(*of, mirrored), *limb_cuts(*of, pairs)))]
 
 

@@ -5,6 +5,7 @@ turn at all. The shape shows where both are: where the last part of a limb is cl
 joint. Limbs of a pair have it at the same distance from their ends.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -46,18 +47,22 @@ class NarrowingsSettings(NamedTuple):
     """Distance between rings, share of that from the limb's end to the farthest vertex of the part."""
 
 
-class _Narrowing(NamedTuple):
+class Narrowing(NamedTuple):
     """The ring about the last part of a limb that is narrowest against those on either side.
 
     level  : its distance from the limb's end, mesh unit
+    place  : that of the joint beyond it
     radius : mesh unit
-    joint  : (xyz,) beyond it, in the reference, mesh unit
+    joint  : (xyz,) in the reference, mesh unit
+    away   : (vertex,) distance from the limb's end, mesh unit; infinite where no path leads
     """
 
     part: int
     level: float
+    place: float
     radius: float
     joint: Floats
+    away: Floats
 
 
 def narrowings(
@@ -70,16 +75,12 @@ def narrowings(
     pairs : ends of limbs that are mirror images
     """
     chosen, found = settings or NarrowingsSettings(), dict[int, StillJoint]()
-    if len(pairs.tip) < chosen.least_pairs:
-        return []
-    for tips, away in zip(*pairs, strict=True):
-        both = [_narrowing(V, F, parts, rest, int(parts.place[tip]), own, chosen) for tip, own in zip(tips, away, strict=True)]
-        one, other = both
+    for one, other in limb_narrowings(V, F, parts, rest, pairs, chosen):
         if one is None or other is None or one.part == other.part:
             continue
         if abs(one.level - other.level) <= chosen.alike * min(one.radius, other.radius):
-            for narrowing, own in zip((one, other), away, strict=True):
-                beyond = np.where(np.isfinite(own), narrowing.level - chosen.outwards * narrowing.radius - own, -np.inf)
+            for narrowing in (one, other):
+                beyond = np.where(np.isfinite(narrowing.away), narrowing.place - narrowing.away, -np.inf)
                 joint = StillJoint(
                     narrowing.part, False, narrowing.joint, narrowing.radius, 1.0 - share_beyond(beyond, narrowing.radius)
                 )
@@ -87,9 +88,22 @@ def narrowings(
     return [found[part] for part in sorted(found)]
 
 
+def limb_narrowings(
+    V: Floats, F: Ints, parts: RootedParts, rest: Floats, pairs: LimbPairs, settings: NarrowingsSettings | None = None
+) -> Iterator[tuple[Narrowing | None, Narrowing | None]]:
+    """Of both limbs of every pair; None of a limb that has none. Arguments are as in `narrowings`."""
+    chosen = settings or NarrowingsSettings()
+    if len(pairs.tip) >= chosen.least_pairs:
+        for tips, away in zip(*pairs, strict=True):
+            one, other = (
+                _narrowing(V, F, parts, rest, int(parts.place[tip]), own, chosen) for tip, own in zip(tips, away, strict=True)
+            )
+            yield one, other
+
+
 def _narrowing(
     V: Floats, F: Ints, parts: RootedParts, rest: Floats, part: int, away: Floats, chosen: NarrowingsSettings
-) -> _Narrowing | None:
+) -> Narrowing | None:
     """That of a limb's last part; None where it has none, and where the limb has no joint or its end is not on its last part.
 
     away : (vertex,) distance from the limb's end, mesh unit
@@ -111,5 +125,6 @@ def _narrowing(
     k = int(narrow.argmax())
     if narrow[k] < chosen.narrow:
         return None
-    place = int(np.abs(rings.level - rings.level[k] + chosen.outwards * radius[k]).argmin())
-    return _Narrowing(part, float(rings.level[k]), float(radius[k]), rings.centre[place])
+    place = rings.level[k] - chosen.outwards * radius[k]
+    joint = rings.centre[np.abs(rings.level - place).argmin()]
+    return Narrowing(part, float(rings.level[k]), float(place), float(radius[k]), joint, away)
