@@ -1,7 +1,8 @@
 """Joints of several parts on one part that are one joint with several bones (ours).
 
 Bones that leave a joint in a bundle, such as the links from the pelvis to both hips, lie under skin that follows none of them
-alone. Each one's rotation centre is then drawn along its bone, away from the joint that all share.
+alone. Each one's rotation centre is then drawn along its bone, away from the joint that all share. Joints that the frames'
+surfaces show were told apart there: a chest and a pelvis that twist on either side of the root have any place on one line.
 """
 
 from collections.abc import Sequence
@@ -70,10 +71,14 @@ _Groups = list[tuple[tuple[int, ...], Floats]]
 
 
 class _Judge(NamedTuple):
-    """What says whether joints are one: (frame, part, 3, 3) motions, the joints of all parts but the root, frames, limits."""
+    """What says whether joints are one: (frame, part, 3, 3) motions, the joints of all parts but the root, frames, limits.
+
+    shown : joints that the frames' surfaces alone show
+    """
 
     R: Floats
     joints: list[_Joint]
+    shown: frozenset[int]
     spans: Ints
     noise: float
     chosen: SharedJointsSettings
@@ -81,6 +86,10 @@ class _Judge(NamedTuple):
     def drifts(self, joints: Sequence[_Joint], places: Sequence[Floats]) -> Floats:
         """(joint, span) drift of each joint at a place (xyz,) of its own, mesh unit."""
         return np.array([joint.drift_at(c, self.spans, self.noise) for joint, c in zip(joints, places, strict=True)])
+
+    def are_told_apart(self, some: Sequence[int], others: Sequence[int]) -> bool:
+        """Whether the frames' surfaces show a joint of both."""
+        return not (self.shown.isdisjoint(some) or self.shown.isdisjoint(others))
 
     def move_alike(self, some: Sequence[int], others: Sequence[int]) -> bool:
         """Whether some part hardly turns against one of the others, so that any place on one line explains both."""
@@ -104,7 +113,9 @@ def shared_joints(
     takes : positions of the frames of each take, each of which may show that joints are two; None takes all as one
     """
     chosen, moved, is_shared = settings or SharedJointsSettings(), rest, np.zeros(len(rest), np.bool_)
-    judge = _Judge(tree.R, _joints(tree, rest), score_spans(len(tree.R), takes), chosen.noise * size, chosen)
+    judge = _Judge(
+        tree.R, _joints(tree, rest), frozenset(tree.shown), score_spans(len(tree.R), takes), chosen.noise * size, chosen
+    )
     for above in np.unique(tree.parents[1:]).tolist():
         groups: _Groups = [((k,), rest[k]) for k in np.flatnonzero(tree.parents == above).tolist()]
         while (merged := _nearest_merged(groups, judge)) is not None:
@@ -130,10 +141,11 @@ def _nearest_merged(groups: _Groups, judge: _Judge) -> _Groups | None:
     chosen = judge.chosen
     apart = {(a, b): float(np.linalg.norm(groups[a][1] - groups[b][1])) for a, b in combinations(range(len(groups)), 2)}
     for (a, b), distance in sorted(apart.items(), key=lambda entry: entry[1]):
-        members = groups[a][0] + groups[b][0]
+        some, others = groups[a][0], groups[b][0]
+        members = some + others
         of = [judge.joints[k - 1] for k in members]
         is_near = distance < chosen.near * min(joint.radius for joint in of)
-        if not is_near or judge.move_alike(groups[a][0], groups[b][0]):
+        if not is_near or judge.are_told_apart(some, others) or judge.move_alike(some, others):
             continue
         here = judge.drifts(of, [joint.place for joint in of])
         place = _common_place(of, here[:, 0].tolist(), chosen.spread)

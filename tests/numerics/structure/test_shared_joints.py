@@ -63,6 +63,13 @@ def test_near_joints_that_both_motions_tell_apart_stay() -> None:
     assert not is_shared.any()
 
 
+@pytest.mark.parametrize(("shown", "is_one"), [((), True), ((1,), True), ((1, 2), False), ((2, 3), True)])
+def test_joints_that_the_frames_surfaces_show_are_not_one(shown: tuple[int, ...], is_one: bool) -> None:
+    """Both of them; a third joint lies elsewhere."""
+    tree, rest = star(np.array([AT, AT, -AT]), np.array([*ASIDE, np.zeros(3)]), LOOSE)
+    assert shared_joints(tree._replace(shown=shown), rest, SIZE).is_shared.tolist() == [False, is_one, is_one, False]
+
+
 def test_joints_farther_apart_than_their_borders_are_wide_stay_whatever_the_motion_says() -> None:
     """Both hinges turn about the line through both joints, so that each explains the other's motion."""
     apart = np.array([AT, AT + [1.2, 0.0, 0.0]])
