@@ -122,8 +122,8 @@ def necks(
 def on_tubes(
     hanging: Iterable[Tube], rest: Floats, shown: Collection[int] = (), settings: NecksSettings | None = None
 ) -> tuple[Floats, Flags]:
-    """(part, xyz) joints of parts that hang on tubes, moved to their place on the tube where they are far from it · (part,)
-    joints that are to stay there.
+    """(part, xyz) joints of parts that hang on tubes, moved to their place on the tube where they are far from it; the array
+    that was given where none is · (part,) joints that have such a place, where they stay.
 
     Where motion shows one joint of two, it lies somewhere between them. The parameters are those of `necks`.
     """
@@ -134,8 +134,8 @@ def on_tubes(
             low, high = chosen.astray
             part, share = tube.part, 0.0 if at.is_third else float(np.clip((at.away[at.own] - low) / (high - low), 0.0, 1.0))
             moved[part] += share * (tube.joint[at.own] - rest[part])
-            stays[part] = at.is_third or share > 0.0
-    return moved if stays.any() else rest, stays
+            stays[part] = True
+    return moved if (moved != rest).any() else rest, stays
 
 
 class _Place(NamedTuple):

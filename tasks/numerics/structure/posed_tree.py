@@ -128,7 +128,7 @@ def _lines(body: MovingSurface, first: FirstTree, rest: Floats) -> Floats:
 def _on_tubes(first: FirstTree, hanging: Sequence[Tube], joints: Floats) -> tuple[Floats, Flags]:
     """`on_tubes`; joints (part, xyz) stay where they are if motion leaves no doubt about them."""
     rest, stays = on_tubes(hanging, joints, first.shown)
-    if not stays.any():
+    if rest is joints:
         return joints, stays
     doubt = np.hypot(first.drift_at(joints), first.residual) + np.finfo(float).tiny
     certain = stays & (first.drift_at(rest) > CERTAIN * doubt)

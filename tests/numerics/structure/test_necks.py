@@ -101,13 +101,16 @@ def test_a_joint_moves_the_more_the_farther_it_is_astray(off: float, share: floa
     height = hanging[0].joint[0, 2]
     moved, stays = on_tubes(hanging, at(height + off * hanging[0].radius))
     assert (moved[1, 2] - height) / hanging[0].radius == pytest.approx((1.0 - share) * off, abs=0.02)
-    assert stays[1] == (share > 0.0)
+    assert stays.tolist() == [False, True]
 
 
-def test_where_no_joint_moves_the_places_are_those_given() -> None:
+def test_where_no_joint_moves_the_places_are_those_given_and_a_joint_in_its_place_stays() -> None:
     rest = at(BOTTOM)
-    assert on_tubes(tube_of(), rest)[0] is rest
+    places, stays = on_tubes(tube_of(), rest)
+    assert places is rest
+    assert stays.tolist() == [False, True]
     assert on_tubes([], rest)[0] is rest
+    assert not on_tubes([], rest)[1].any()
 
 
 def test_a_tube_with_a_joint_at_both_places_has_no_other() -> None:

@@ -187,9 +187,9 @@ def test_motion_that_leaves_no_doubt_places_a_joint(here: float, unexplained: fl
     assert (rest[1, 2] != joints[1, 2]) == moves
 
 
-@pytest.mark.parametrize(("astray", "stays"), [(True, True), (False, False)])
-def test_surfaces_do_not_move_a_joint_that_is_moved_to_a_tube(
-    astray: bool, stays: bool, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("astray", "has_necks"), [(True, True), (False, True), (False, False)])
+def test_surfaces_do_not_move_a_joint_that_has_a_place_on_a_tube(
+    astray: bool, has_necks: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: dict[str, Any] = {}
 
@@ -203,10 +203,10 @@ def test_surfaces_do_not_move_a_joint_that_is_moved_to_a_tube(
     surface, cut, tips = compound_cut() if astray else nodding_cut(BOTTOM)
     first = in_tree_order(tree_joints(surface, cut, tips, settings=TREE._replace(hidden_bones=False)), 2)
     laid: Any = object()
-    kinematic_tree(surface, first, tips, laid=laid, has_necks=True)
-    assert asked["held"].tolist() == [False, stays]
+    kinematic_tree(surface, first, tips, laid=laid, has_necks=has_necks)
+    assert asked["held"].tolist() == [False, has_necks]
     np.testing.assert_array_equal(asked["lines"], [0.0 * line, line])
-    assert (asked["rest"] == first.rest).all() != stays
+    assert (asked["rest"] == first.rest).all() != astray
 
 
 def test_lengths_are_held_and_weights_sum_to_one() -> None:
