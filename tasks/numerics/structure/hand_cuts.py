@@ -20,7 +20,7 @@ from kinetree.tasks.numerics.structure.narrowings import Narrowing, limb_narrowi
 
 PALM = (1.0, 3.2)
 """From where to where beyond the beginning of a hand no ring lies, radii of the narrowing. Persons 868 and 892, who run, had
-joints there, 2.5 and 1.3 beyond; 32 wrists that cuts have lie 1.0 before to 0.6 beyond, balls of feet 4 beyond ankles. With 1.2
+joints there, 2.5 and 1.3 beyond; 33 wrists that cuts have lie 1.0 before to 0.6 beyond, balls of feet 4 beyond ankles. With 1.2
 and 3.2 a rigged body that walks loses a hand."""
 SAME = 0.5
 """Distance of another ring from where the hand begins, radii, below which no ring is added there."""

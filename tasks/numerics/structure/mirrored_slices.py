@@ -88,7 +88,7 @@ class MirroredSlicesSettings(NamedTuple):
     most_drift: float = 0.7
     """Drift of the limb's joint without a slice, in radii of its border, at most: else the part is a bone. Upper arms of two
     four-legged bodies are as short as slices, and nearly mixtures; without them shoulder and elbow are one joint, which drifts
-    by 0.93 to 0.98. Of 18 slices of people one has 0.47, half of an upper arm, the others 0.05 to 0.19."""
+    by 0.93 to 0.98. Of 14 slices of people one has 0.47, half of an upper arm, the others 0.05 to 0.19."""
     looser: float = 1.3
     """Drift of the limb's joint, in the least, at most. The more of a slice goes to the limb, the farther inwards the joint
     lies, and the less it drifts until it is where the limb turns; from there on the drift hardly changes."""
