@@ -1,20 +1,15 @@
 """Joints that a cut has close to one of the trunk that the frames' surfaces show: may be the same one, smeared (ours).
 
 An alignment spreads the turn of a spine over the trunk, so that a cut may have a joint beside the true one. A ring then shows
-the true one as one more, if it lies far enough away. Amid two joints that are right a ring shows one that is none, where the
-spine between them is short (`roomy_rings`, see `trunk_bends`).
+the true one as one more, if it lies far enough away. Of one amid two that are right see `trunk_bends`.
 """
-
-from collections.abc import Sequence
 
 import numpy as np
 
-from kinetree.tasks.numerics.arrays import Flags, Floats, Ints
-from kinetree.tasks.numerics.structure.end_rings import EndRing
+from kinetree.tasks.numerics.arrays import Flags, Floats
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.joint_partners import joints_between_pairs
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
-from kinetree.tasks.numerics.structure.surface_evidence import of_mirrored_limbs, rooted
+from kinetree.tasks.numerics.structure.surface_evidence import of_mirrored_limbs
 
 CLOSE = 1.0
 """Distance of a joint from one of the trunk that the surfaces show, in radii of the smaller border, below which they are asked
@@ -46,30 +41,6 @@ def close_joints(tree: FirstTree, extended: FirstTree, pairs: LimbPairs) -> list
             place[int(tree.place[given])] = int(extended.place[given])
     apart = {joint: _radii_apart(extended, own) for joint, own in place.items()}
     return sorted((joint for joint in apart if apart[joint] < CLOSE), key=lambda joint: apart[joint])
-
-
-def amid_two(extended: FirstTree, pairs: LimbPairs) -> list[int]:
-    """Joints that surfaces show within a part of the trunk that lies between two of its joints, as between pelvis and chest.
-
-    extended : a tree with joints that surfaces show
-    """
-    trunk = joints_between_pairs(rooted(extended), pairs)
-    meet = _meeting(extended, trunk)
-    return [k for k in extended.shown if k in trunk and min(meet[k], meet[extended.parents[k]]) > 1]
-
-
-def roomy_rings(tree: FirstTree, rings: Sequence[EndRing], pairs: LimbPairs) -> list[EndRing]:
-    """The rings without those that lie closer than `CLOSE` to a joint of their part, if this lies between two of the trunk.
-
-    Where a short spine bends at both ends, all flesh between them bends, so that surfaces show a joint more amid them.
-    """
-    is_between = _meeting(tree, joints_between_pairs(rooted(tree), pairs)) > 1
-    return [ring for ring in rings if not is_between[ring.cut.part] or ring.cut.apart >= CLOSE]
-
-
-def _meeting(tree: FirstTree, joints: Ints) -> Ints:
-    """(part,) how many of some joints each part has."""
-    return np.bincount(np.concatenate([joints, tree.parents[joints]]), minlength=len(tree.parents))
 
 
 def are_as_good(area: Floats, extended: FirstTree, without: FirstTree, pairs: LimbPairs) -> bool:

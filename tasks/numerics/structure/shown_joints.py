@@ -10,7 +10,7 @@ import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
 from kinetree.tasks.numerics.registration.correspondence import Target
-from kinetree.tasks.numerics.structure.close_joints import amid_two, are_as_good, close_joints, roomy_rings
+from kinetree.tasks.numerics.structure.close_joints import are_as_good, close_joints
 from kinetree.tasks.numerics.structure.end_joints import EndJoint, EndJointsSettings, end_joints, judged_runs
 from kinetree.tasks.numerics.structure.end_rings import Fits, closer_rings, end_rings, laid_in_runs
 from kinetree.tasks.numerics.structure.extended_tree import extended_tree
@@ -29,7 +29,7 @@ from kinetree.tasks.numerics.structure.surface_evidence import (
     of_mirrored_limbs,
     rooted,
 )
-from kinetree.tasks.numerics.structure.trunk_bends import with_joints_at_bends
+from kinetree.tasks.numerics.structure.trunk_bends import amid_two, roomy_rings, with_joints_at_bends
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 

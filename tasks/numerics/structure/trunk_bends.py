@@ -8,19 +8,23 @@ That is certain only where halves of the frames bend each joint at the same plac
 part holds one that the cut has not found, some frames bend it here and some there.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from kinetree.tasks.numerics.arrays import Floats, Ints
+from kinetree.tasks.numerics.structure.close_joints import CLOSE
+from kinetree.tasks.numerics.structure.end_rings import EndRing
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.hinge_costs import hinge_costs
 from kinetree.tasks.numerics.structure.hinge_places import HingePlacesSettings, hinge_shifts, hinge_ways
+from kinetree.tasks.numerics.structure.joint_partners import joints_between_pairs
 from kinetree.tasks.numerics.structure.laid_parts import laid_frames
+from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.refitted_tree import refitted_tree
 from kinetree.tasks.numerics.structure.score_spans import score_spans
-from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
+from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence, rooted
 
 OF_TRUNK = HingePlacesSettings(length=0.3, straight=0.4, gain=-np.inf, short_straight=0.4, short_gain=-np.inf)
 """What is asked of places: halves of the frames and both shapes of the border must agree on them. A gain is not asked for,
@@ -35,6 +39,25 @@ BOTH_SIDES = 0.25
 """How far on the other side of a joint some half of the frames bends the trunk than the others, radii, below which it is where
 it turns all the same, if all joints that surfaces show are needed (`close_joints`), as that of 606 is not. People 842 and 850,
 whose two are right, have 0; those two humans 0.6."""
+
+
+def amid_two(extended: FirstTree, pairs: LimbPairs) -> list[int]:
+    """Joints that surfaces show within a part of the trunk that lies between two of its joints, as between pelvis and chest.
+
+    extended : a tree with joints that surfaces show
+    """
+    trunk = joints_between_pairs(rooted(extended), pairs)
+    meet = _meeting(extended, trunk)
+    return [k for k in extended.shown if k in trunk and min(meet[k], meet[extended.parents[k]]) > 1]
+
+
+def roomy_rings(tree: FirstTree, rings: Sequence[EndRing], pairs: LimbPairs) -> list[EndRing]:
+    """The rings without those that lie closer than `CLOSE` to a joint of their part, if this lies between two of the trunk.
+
+    Where a short spine bends at both ends, all flesh between them bends, so that surfaces show a joint more amid them.
+    """
+    is_between = _meeting(tree, joints_between_pairs(rooted(tree), pairs)) > 1
+    return [ring for ring in rings if not is_between[ring.cut.part] or ring.cut.apart >= CLOSE]
 
 
 def with_joints_at_bends(
@@ -82,3 +105,8 @@ def _with_border_moved(V: Floats, label: Ints, tree: FirstTree, joint: int, shif
     far = V[tree.label == joint].mean(axis=0) - V[tree.label == above].mean(axis=0)
     loses, wins = (joint, above) if far @ shift > 0.0 else (above, joint)
     return np.where((label == loses) & (outwards < way), wins, label)
+
+
+def _meeting(tree: FirstTree, joints: Ints) -> Ints:
+    """(part,) how many of some joints each part has."""
+    return np.bincount(np.concatenate([joints, tree.parents[joints]]), minlength=len(tree.parents))

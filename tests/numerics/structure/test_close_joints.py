@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from articulated import swings
 from smeared import END, Frames, turning
-from trunk import trunk_with_joint_midway, trunk_with_two_joints, two_pairs, with_joint_amid
+from trunk import trunk_with_joint_midway, two_pairs
 from whole_tree import fits_of_rings
 
 from kinetree.tasks.numerics.structure import close_joints as numerics
 from kinetree.tasks.numerics.structure import shown_joints
-from kinetree.tasks.numerics.structure.close_joints import amid_two, are_as_good, close_joints, roomy_rings
+from kinetree.tasks.numerics.structure.close_joints import are_as_good, close_joints
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import SMEARED, Dropped
-from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence, all_end_rings
+from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
 from kinetree.tasks.numerics.structure.without_joint import without_joint
 
 SHOWN = 1.1
@@ -126,27 +126,6 @@ def test_the_closest_is_asked_for_first(bent_twice: Bent, extended: FirstTree) -
         rest[head] = rest[shown] + [0.0, 0.0, away]
         found = close_joints(bent_twice.tree, extended._replace(rest=rest, radius=radius), two_pairs(bent_twice.body))
         assert found == order
-
-
-@pytest.mark.parametrize(("shown", "amid"), [((2,), True), ((3,), False), ((1, 2), True)])
-def test_which_joints_lie_amid_two_of_the_trunk(shown: tuple[int, ...], amid: bool) -> None:
-    """The trunk's joints are 1, 2 and 3, from below."""
-    body, two = trunk_with_two_joints(swings(24, 4, 20.0, axes=1, seed=1), (-1.0, 1.0), (-1.0, 1.0))
-    tree = with_joint_amid(two, shown)
-    assert amid_two(tree, two_pairs(body)) == ([2] if amid else [])
-    assert amid_two(two._replace(shown=(1, 2)), two_pairs(body)) == [], "only one on either side"
-
-
-def test_rings_between_two_joints_of_the_trunk_lie_a_radius_from_both() -> None:
-    body, two = trunk_with_two_joints(swings(24, 4, 20.0, axes=1, seed=1), (-1.0, 1.0), (-1.0, 1.0))
-    rings = all_end_rings(body.V, body.F, body.area, two, two_pairs(body))
-    assert {0, 1, 2} <= {ring.cut.part for ring in rings}
-    near, far = (
-        [ring._replace(cut=ring.cut._replace(apart=factor * numerics.CLOSE)) for ring in rings] for factor in (0.99, 1.01)
-    )
-    left = roomy_rings(two, near, two_pairs(body))
-    assert {ring.cut.part for ring in left} == {ring.cut.part for ring in rings} - {1}
-    assert len(roomy_rings(two, far, two_pairs(body))) == len(rings)
 
 
 def test_one_does_as_well_if_the_trunk_is_explained_and_no_other_joint_goes(bent_twice: Bent, extended: FirstTree) -> None:

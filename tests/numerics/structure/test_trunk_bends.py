@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from articulated import swings
 from smeared import END, Frames, turning
-from trunk import trunk_with_two_joints
+from trunk import trunk_with_two_joints, two_pairs, with_joint_amid
 
+from kinetree.tasks.numerics.structure.close_joints import CLOSE
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
-from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence
-from kinetree.tasks.numerics.structure.trunk_bends import _is_settled, with_joints_at_bends
+from kinetree.tasks.numerics.structure.surface_evidence import SurfaceEvidence, all_end_rings
+from kinetree.tasks.numerics.structure.trunk_bends import _is_settled, amid_two, roomy_rings, with_joints_at_bends
 
 TRUE = (-1.2, 1.2)
 """Heights of the joints."""
@@ -83,3 +84,22 @@ def test_none_in_few_frames() -> None:
 def test_when_a_joint_is_settled(ways: tuple[float, ...], settled: bool, if_needed: bool) -> None:
     assert _is_settled(np.array(ways), False) == settled
     assert _is_settled(np.array(ways), True) == if_needed
+
+
+@pytest.mark.parametrize(("shown", "amid"), [((2,), True), ((3,), False), ((1, 2), True)])
+def test_which_joints_lie_amid_two_of_the_trunk(shown: tuple[int, ...], amid: bool) -> None:
+    """The trunk's joints are 1, 2 and 3, from below."""
+    body, two = trunk_with_two_joints(swings(24, 4, 20.0, axes=1, seed=1), (-1.0, 1.0), (-1.0, 1.0))
+    tree = with_joint_amid(two, shown)
+    assert amid_two(tree, two_pairs(body)) == ([2] if amid else [])
+    assert amid_two(two._replace(shown=(1, 2)), two_pairs(body)) == [], "only one on either side"
+
+
+def test_rings_between_two_joints_of_the_trunk_lie_a_radius_from_both() -> None:
+    body, two = trunk_with_two_joints(swings(24, 4, 20.0, axes=1, seed=1), (-1.0, 1.0), (-1.0, 1.0))
+    rings = all_end_rings(body.V, body.F, body.area, two, two_pairs(body))
+    assert {0, 1, 2} <= {ring.cut.part for ring in rings}
+    near, far = ([ring._replace(cut=ring.cut._replace(apart=factor * CLOSE)) for ring in rings] for factor in (0.99, 1.01))
+    left = roomy_rings(two, near, two_pairs(body))
+    assert {ring.cut.part for ring in left} == {ring.cut.part for ring in rings} - {1}
+    assert len(roomy_rings(two, far, two_pairs(body))) == len(rings)
