@@ -49,6 +49,8 @@ class JointError(_FileObject):
     """Root mean square of what the motions of its two parts leave unexplained."""
     surface_offset: Length | None = None
     """Root mean square distance from where halves of the frames' surfaces alone have the joint; null where they do not say."""
+    asymmetry: Length | None = None
+    """Difference between the lengths of the joint's bone and of that bone's mirror image; null where it has none."""
     cuts: Annotated[int, Field(ge=1)]
     """Cuts of the body, each in another pose."""
     agreeing: Annotated[int, Field(ge=0)]

@@ -133,12 +133,13 @@ def error_bars_text(bars: ErrorBars) -> tuple[str, ...]:
     if not rows:
         return ("no errors are known",)
     wide = max(len(bars.joints[j]) for j in rows)
-    lengths = ("expected", "bound", "drift", "spread", "residual", "surface_offset")
+    lengths = ("expected", "bound", "drift", "spread", "residual", "surface_offset", "asymmetry")
     lines = []
     for j in rows:
-        expected, bound, drift, spread, residual, offset = (two_digits(getattr(bars, name)[j]) for name in lengths)
+        expected, bound, drift, spread, residual, offset, unlike = (two_digits(getattr(bars, name)[j]) for name in lengths)
         evidence = f"drift {drift}, spread {spread} over {bars.agreeing[j]} of {bars.cuts} cuts, residual {residual}"
         evidence += "" if np.isnan(bars.surface_offset[j]) else f", surface offset {offset}"
+        evidence += "" if np.isnan(bars.asymmetry[j]) else f", bone {unlike} unlike its mirror image"
         evidence = STILL.get(bars.evidence[j] or "", evidence)
         support = f"seen in {bars.support[j]} frames"
         lines.append(f"{bars.joints[j]:{wide}}  ±{expected}, 90 % below {bound}; {evidence}, {support}")

@@ -124,6 +124,6 @@ def bars_of(skeleton: Skeleton) -> ErrorBars:
         joints=skeleton.names, frames=skeleton.frames, cuts=4, expected=expected, bound=2.0 * expected, in_frame=in_frame,
         drift=expected, spread=0.5 * expected, residual=0.2 * expected, surface_offset=0.3 * expected,
         turning_resistance=expected, hinge_offset=expected, turning_below=expected, softness=expected,
-        agreeing=count, support=4 * count,
+        asymmetry=0.4 * expected, agreeing=count, support=4 * count,
         evidence=tuple("motion" if each else None for each in turning),
     )  # fmt: skip

@@ -124,18 +124,20 @@ def test_expected_errors_stand_with_their_joints_and_in_every_frame(body):
         assert joint["error"]["expected"] == bars.expected[j]
         assert joint["error"]["bound"] == bars.bound[j]
         assert joint["error"]["surface_offset"] == pytest.approx(bars.surface_offset[j], rel=1e-2)
+        assert joint["error"]["asymmetry"] == pytest.approx(bars.asymmetry[j], rel=1e-2)
         assert (joint["error"]["cuts"], joint["error"]["agreeing"], joint["error"]["support"]) == (4, 3, 12)
         np.testing.assert_allclose([row[j] for row in content["errors"]], bars.in_frame[:, j], rtol=1e-3)
 
 
 def test_spread_of_a_joint_that_one_cut_has_its_offset_where_there_is_none_and_a_frame_that_was_not_measured_are_null(body):
     bars = bars_of(body)
-    unknown = dict.fromkeys(("spread", "surface_offset"), np.full_like(bars.spread, np.nan))
+    unknown = dict.fromkeys(("spread", "surface_offset", "asymmetry"), np.full_like(bars.spread, np.nan))
     lacking = bars.model_copy(update={**unknown, "frames": bars.frames[1:], "in_frame": bars.in_frame[1:]})
     content = json.loads(text(body, bars=lacking))
     j = body.kinds.index("joint")
     assert content["joints"][j]["error"]["spread"] is None
     assert content["joints"][j]["error"]["surface_offset"] is None
+    assert content["joints"][j]["error"]["asymmetry"] is None
     assert content["errors"][0][j] is None
     assert content["errors"][1][j] is not None
 

@@ -253,6 +253,7 @@ def test_joints_have_their_expected_error_and_its_evidence_and_frames_have_their
         if kind == "joint":
             assert float(told["expected_error"]) == pytest.approx(expected)
             assert float(told["error_bound"]) == pytest.approx(2 * expected)
+            assert float(told["asymmetry"]) == pytest.approx(0.4 * expected)
             assert (told["cuts_agreeing"], told["cuts"], told["frames_seen"], told["evidence"]) == ("3", "4", "12", "motion")
         else:
             assert told["expected_error"] == told["cuts"] == told["frames_seen"] == told["evidence"] == ""

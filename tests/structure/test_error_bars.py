@@ -74,7 +74,10 @@ def test_text_says_error_bound_and_evidence_of_every_joint() -> None:
     assert f"±{found.expected[1]:.2g}, 90 % below {found.bound[1]:.2g}" in lines[0]
     assert "spread 0.05 over 3 of 4 cuts" in lines[0]
     assert "surface offset" not in lines[0]
+    assert "mirror image" not in lines[0]
     assert type(found) is ErrorBars
+    unlike = views.text(found.model_copy(update={"asymmetry": np.full(5, 0.03)}))
+    assert "residual 0.02, bone 0.03 unlike its mirror image" in unlike[0]
 
 
 def test_the_tree_in_words_has_the_error_bars_and_the_drift_where_none_are_known() -> None:

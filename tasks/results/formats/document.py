@@ -82,7 +82,7 @@ def _joint_error(name: str, bars: ErrorBars | None) -> JointError | None:
         return None
     lengths = {field: float(getattr(bars, field)[j]) for field in ("expected", "bound", "drift", "residual")}
     counts = {field: int(getattr(bars, field)[j]) for field in ("agreeing", "support")}
-    partial = {field: _rounded(float(getattr(bars, field)[j])) for field in ("spread", "surface_offset")}
+    partial = {field: _rounded(float(getattr(bars, field)[j])) for field in ("spread", "surface_offset", "asymmetry")}
     return JointError(**lengths, **counts, **partial, cuts=bars.cuts)
 
 

@@ -19,7 +19,7 @@ DIGITS = 9
 """Significant digits of every number."""
 ERROR_COLUMNS = {
     "expected_error": "expected", "error_bound": "bound", "drift": "drift", "spread": "spread", "residual": "residual",
-    "surface_offset": "surface_offset", "cuts_agreeing": "agreeing", "frames_seen": "support",
+    "surface_offset": "surface_offset", "asymmetry": "asymmetry", "cuts_agreeing": "agreeing", "frames_seen": "support",
 }  # fmt: skip
 """Columns of the table of joints, and the fields of the error bars that they show."""
 
@@ -41,7 +41,7 @@ def tables(skeleton: Skeleton, found: Derivatives | None, bars: ErrorBars | None
     joints      a row a joint: name, parent, kind, length of its bone, range of its angle in degrees, unit of lengths; whether
                 its motion, the body's shape alone or the other side alone shows it; its expected error, a bound that nine of
                 ten joints keep, and drift, spread over so many cuts of which so many have the joint, residual, surface
-                offset, frames seen; no such columns where no error is known
+                offset, difference of its bone from the mirror image, frames seen; no such columns where no error is known
     positions   a row a frame: frame, seconds, then x, y, z of every joint
     confidence  a row a frame: frame, seconds, then every joint's confidence, 0 to 1
     errors      a row a frame: frame, seconds, then every joint's expected error; only where errors are known
