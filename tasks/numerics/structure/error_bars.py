@@ -4,7 +4,7 @@
                                                     · hinge^i · below^j · softness^k)²)
                                                                           lengths in the root of the area
 where the frames give every vertex, least = κ · radius of the border
-where the joint has a mirror image, ε_j becomes ε_j^(1 − n) · u^n, u = difference between the lengths of both bones
+where the joint has a mirror image, of several cuts, ε_j becomes ε_j^(1 − n) · u^n, u = difference between the bones' lengths
 ε_jt = ε_j · (1 + m (1 − confidence_jt))                                  in a frame
 """
 
