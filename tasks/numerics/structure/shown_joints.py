@@ -112,6 +112,8 @@ def _without_close_joints(
     for joint in close_joints(tree, extended, pairs):
         one = without_joint(body, tree, joint, evidence, SMEARED)
         without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
+        if len(without.parents) == len(extended.parents):
+            without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence, roomy=True)
         if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
             return _without_close_joints(body, one, without, pairs, evidence)
     return extended
