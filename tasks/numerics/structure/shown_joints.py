@@ -108,12 +108,15 @@ def _with_settled_trunk(
 def _without_close_joints(
     body: MovingSurface, tree: FirstTree, extended: FirstTree, pairs: LimbPairs, evidence: SurfaceEvidence
 ) -> FirstTree:
-    """The extended tree without joints of the trunk that those which surfaces show do as well without (`close_joints`)."""
+    """The extended tree without joints of the trunk that those which surfaces show do as well without (`close_joints`).
+
+    Where these show another one in such a joint's place, that must lie a radius from both beside it (`roomy_rings`).
+    """
     for joint in close_joints(tree, extended, pairs):
-        one = without_joint(body, tree, joint, evidence, SMEARED)
-        without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence)
+        one, known = without_joint(body, tree, joint, evidence, SMEARED), KnownFits({})
+        without = _with_shown_joints(body, one, known, pairs, evidence)
         if len(without.parents) == len(extended.parents):
-            without = _with_shown_joints(body, one, KnownFits({}), pairs, evidence, roomy=True)
+            without = _with_shown_joints(body, one, known, pairs, evidence, roomy=True)
         if len(without.parents) < len(extended.parents) and are_as_good(body.area, extended, without, pairs):
             return _without_close_joints(body, one, without, pairs, evidence)
     return extended

@@ -92,6 +92,24 @@ def test_the_cuts_one_goes_where_surfaces_show_the_other_alone(
     assert after.rest[after.shown[0], 2] == extended.rest[extended.shown[0], 2]
 
 
+@pytest.mark.parametrize(("roomy_too", "goes"), [(False, True), (True, False)])
+def test_another_one_in_its_place_must_lie_far_from_the_joints_beside_it(
+    roomy_too: bool, goes: bool, bent_twice: Bent, extended: FirstTree, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the cut's joint the surfaces show one more; asked with rings a radius from others alone, perhaps not."""
+    asked: list[bool] = []
+
+    def shown(*of: object, roomy: bool = False) -> FirstTree:
+        asked.append(roomy)
+        return extended if roomy_too or not roomy else single_of(bent_twice, extended)
+
+    monkeypatch.setattr(shown_joints, "_with_shown_joints", shown)
+    after = without(bent_twice, extended)
+    assert asked == [False, True]
+    assert (after is not extended) == goes
+    assert len(after.parents) == len(extended.parents) - goes
+
+
 def test_it_stays_where_one_joint_does_worse(bent_twice: Bent, extended: FirstTree, monkeypatch: pytest.MonkeyPatch) -> None:
     single = single_of(bent_twice, extended)
     worse = single._replace(unexplained=10.0 * single.unexplained)
