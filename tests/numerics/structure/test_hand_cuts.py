@@ -9,7 +9,7 @@ from kinetree.tasks.numerics.geometry.geodesic_distance import geodesic_distance
 from kinetree.tasks.numerics.geometry.surface import Surface, surface_areas
 from kinetree.tasks.numerics.structure.end_cuts import EndCut, end_cuts
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.hand_cuts import PALM, SAME, with_hand_rings
+from kinetree.tasks.numerics.structure.hand_cuts import PALM, with_hand_rings
 from kinetree.tasks.numerics.structure.joint_partners import RootedParts
 from kinetree.tasks.numerics.structure.limb_pairs import LimbPairs
 from kinetree.tasks.numerics.structure.narrowings import limb_narrowings
@@ -100,10 +100,11 @@ def test_where_the_hand_begins_is_where_narrowings_have_it() -> None:
     label = np.where(V[:, 2] > SHOULDER, 1, np.where(V[:, 2] < -SHOULDER, 2, 0))
     parts = RootedParts(label, np.array([-1, 0, 0]), np.array([0.0, 2.0, 2.0]))
     rest = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, SHOULDER], [0.0, 0.0, -SHOULDER]])
-    for one, other in limb_narrowings(V, F, parts, rest, LimbPairs(np.tile(tips, (2, 1)), away)):
+    found = list(limb_narrowings(V, F, parts, rest, LimbPairs(np.tile(tips, (2, 1)), away)))
+    assert len(found) == 2
+    for one, other in found:
         assert one is not None
         assert other is not None
         assert one.joint[2] == pytest.approx(WRIST, abs=0.3)
         assert other.joint[2] == pytest.approx(-WRIST, abs=0.3)
         assert one.place == pytest.approx(one.level - 0.75 * one.radius)
-    assert PALM[0] > SAME
