@@ -18,11 +18,6 @@ NEAR = 0.65
 """Distance between the two joints in radii of the smaller border, below which they are one. Of 152 bodies three have slices,
 with 0.49 to 0.57; of the 26 pairs of true joints within 1.35 radii three have 0.77 to 0.9, the others 1.05 and more."""
 
-ASKEW = 0.9
-"""The same of a part that carries one limb of a pair and more, while the other limb hangs on the part above. Person 926, who
-greets, has such a part, with neck and one arm, and 0.76; 758 and 878 have 1.61 and 1.13: there the part is the chest, and the
-other arm hangs on the wrong one."""
-
 AMID = 0.6
 """Distance of a part's joint from the middle between the two limbs of a pair that it carries, in radii of its border, below
 which it is flesh about them, if it carries nothing else. People 14, 758 and 781 have such flesh, with 0.22 to 0.29; chests
@@ -45,11 +40,7 @@ def trunk_slices(body: MovingSurface, tree: FirstTree, leaves: Ints, pairs: Limb
         if _is_amid_limbs(tree, part, pairs):
             found.append(Slice(part, int(tree.parents[part]), tuple(below.tolist()), np.full(len(body.V), np.inf)))
             continue
-        near = [
-            k
-            for k in below[of_trunk[below]].tolist()
-            if _distance(tree, part, tree.rest[k], tree.radius[k]) < (ASKEW if _parts_a_pair(tree, k, pairs) else NEAR)
-        ]
+        near = [k for k in below[of_trunk[below]].tolist() if _distance(tree, part, tree.rest[k], tree.radius[k]) < NEAR]
         if near:
             found.append(slice_between(body, tree, near[0], part))
     return found
@@ -68,13 +59,6 @@ def _is_amid_limbs(tree: FirstTree, part: int, pairs: LimbPairs) -> bool:
     if len(below) != 2 or not (ends[below[0]] & ends[below[1], :, ::-1]).any():
         return False
     return _distance(tree, part, tree.rest[below].mean(axis=0), np.inf) < AMID
-
-
-def _parts_a_pair(tree: FirstTree, part: int, pairs: LimbPairs) -> bool:
-    """Whether one limb of a pair lies beyond a part, and the other hangs on the part above."""
-    ends = beyond(tree.parents)[:, tree.label[pairs.tip]] > 0  # (part, pair, 2)
-    beside = (tree.parents == tree.parents[part]) & (np.arange(len(tree.parents)) != part)
-    return bool((ends[part] & ends[beside][:, :, ::-1].any(axis=0)).any())
 
 
 def _distance(tree: FirstTree, part: int, place: Floats, radius: float) -> float:

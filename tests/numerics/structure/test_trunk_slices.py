@@ -8,10 +8,9 @@ from smeared import END, moving
 from trunk import trunk_with_two_joints, two_pairs
 
 from kinetree.tasks.numerics.structure import agreed_tree as agreed
-from kinetree.tasks.numerics.structure import trunk_slices as module
 from kinetree.tasks.numerics.structure.agreed_tree import agreed_tree
 from kinetree.tasks.numerics.structure.first_tree import FirstTree
-from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS, LimbPairs
+from kinetree.tasks.numerics.structure.limb_pairs import NO_PAIRS
 from kinetree.tasks.numerics.structure.part_tree import MovingSurface
 from kinetree.tasks.numerics.structure.pruning import FLESH
 from kinetree.tasks.numerics.structure.trunk_slices import trunk_slices
@@ -84,31 +83,3 @@ def test_its_flesh_goes_to_the_trunk_on_which_the_limbs_hang_then(monkeypatch: p
     assert (2, FLESH) in found.graph.dropped
     (own,) = np.unique(found.label[np.isin(tree.label, [1, 2])]).tolist()
     assert own in found.parents[found.label[np.isin(tree.label, [5, 6])]], "a limb hangs on the part in their place"
-
-
-@pytest.mark.parametrize(
-    ("parents", "apart"),
-    [
-        ([-1, 0, 1, 2, 2, 1], True),  # neck 3 and an arm 4 on part 2, the other arm 5 beside it
-        ([-1, 0, 1, 2, 2, 2], False),
-        ([-1, 0, 1, 2, 2, 0], False),
-    ],
-    ids=["beside", "both beyond", "farther inwards"],
-)
-def test_a_part_with_one_limb_of_a_pair_whose_other_one_hangs_beside_it(parents: list[int], apart: bool) -> None:
-    none = np.zeros(0)
-    tree = FirstTree._make([none] * len(FirstTree._fields))._replace(parents=np.array(parents), label=np.arange(6))
-    pairs = LimbPairs(np.array([[4, 5]]), np.zeros((1, 2, 6)))
-    assert module._parts_a_pair(tree, 2, pairs) == apart
-    assert not module._parts_a_pair(tree, 2, NO_PAIRS)
-
-
-def test_joints_of_such_a_part_may_lie_farther_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    tree = cut_of(body(), (THICK, 0.15))
-    (one,) = [k for k in range(1, len(tree.parents)) if THICK[0] < body().V[tree.label == k, 2].mean() < THICK[1]]
-    (far,) = np.flatnonzero(tree.parents == one)
-    radii = np.linalg.norm(tree.rest[one] - tree.rest[far]) / tree.radius[[one, far]].min()
-    monkeypatch.setattr(module, "_parts_a_pair", lambda _tree, part, _pairs: part == far)
-    for limit, count in ((1.01 * radii, 1), (0.99 * radii, 0)):
-        monkeypatch.setattr(module, "ASKEW", limit)
-        assert len(trunk_slices(moving(body()), tree, leaves(2, 2), NO_PAIRS)) == count
